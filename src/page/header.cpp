@@ -54,7 +54,8 @@ Json materialsOf(const Scene& scene, const std::vector<MaterialColours>& colours
     materials.push_back({{"name", scene.materials[m].name},
                          {"reflectance", json(colours[m].reflectance)},
                          {"emission", json(colours[m].emission)},
-                         {"textured", colours[m].textured}});
+                         {"textured", colours[m].textured},
+                         {"factor", json(scene.materials[m].reflectance)}});
   }
   return materials;
 }

@@ -445,6 +445,7 @@ TEST(PageData, AVaryingMaterialIsTheMeanOfItsPatches) {
   EXPECT_FALSE(made.page().header["materials"][1]["textured"]);
   // Half of the texture is white, of a reflectance of 0.5.
   EXPECT_NEAR(wall["reflectance"][0].get<double>(), 0.25, 1e-6);
+  EXPECT_EQ(wall["factor"][0].get<double>(), 0.5);
 }
 
 class PageElements : public FolderTest {};

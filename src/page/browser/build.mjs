@@ -1,5 +1,6 @@
 // node build.mjs OUT.html: the page without its data, one file: index.html with style sheet, program
-// and worker inside. `radiosity view` replaces the text <!--radiosity-data--> in it.
+// and worker inside. `radiosity view` replaces the text <!--radiosity-data--> in it. The program comes
+// before the data, and waits for their end, so that it can name a file that is cut short.
 import { readFile, rename, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -69,10 +70,12 @@ function put(page, mark, text) {
 }
 
 const style = await bundled("style.css", { loader: { ".css": "css" } });
+const reading = await bundled("reading.ts");
 const program = await bundled("main.ts", { plugins: [workers] });
 const licence = (await readFile(join(here, "THREE-LICENSE.txt"), "utf8")).trim();
 let page = await readFile(join(here, "index.html"), "utf8");
 page = put(page, "<!--style-->", `<style>${style.trim()}</style>`);
+page = put(page, "<!--reading-->", `<script>${inScript(reading.trim())}</script>`);
 page = put(page, "<!--program-->", `<script>\n/* three.js: ${licence} */\n${inScript(program)}</script>`);
 if (page.split("<!--radiosity-data-->").length !== 2) {
   throw new Error("the page needs <!--radiosity-data--> once");

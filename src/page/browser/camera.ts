@@ -1,6 +1,7 @@
 // The viewer's position: orbit around a pivot, pan, zoom, or walk; by mouse, touch and keyboard.
 import { PerspectiveCamera, Vector3 } from "three";
 import type { Header } from "./container";
+import { isShortcut } from "./ui";
 
 const STEEPEST = (89 * Math.PI) / 180;
 const TURN_A_PIXEL = 0.005; // radians
@@ -8,15 +9,17 @@ const TURN_A_SECOND = 1.2; // by keys, radians
 const WALK_A_SECOND = 0.35; // of the scene's diagonal
 const TAP_PIXELS = 6;
 const LONG_PRESS_MS = 500;
+const MODIFIERS = ["Shift", "Control", "Alt", "AltGraph", "Meta"];
 
-/** Keys that move while they are held, with the motion in the viewer's own axes. */
+/** Keys that move while they are held, by their places, with the motion in the viewer's own axes. */
 const KEYS: Record<string, "left" | "right" | "up" | "down" | "forward" | "back" | "rise" | "sink" |
   "stepLeft" | "stepRight"> = {
   ArrowLeft: "left", ArrowRight: "right", ArrowUp: "up", ArrowDown: "down",
   KeyW: "forward", KeyS: "back", KeyA: "stepLeft", KeyD: "stepRight", KeyE: "rise", KeyQ: "sink",
   PageUp: "rise", PageDown: "sink",
-  Equal: "forward", NumpadAdd: "forward", Minus: "back", NumpadSubtract: "back",
 };
+/** The same by what is written on keys; = is + without Shift on many keyboards. */
+const CHARACTERS: typeof KEYS = { "+": "forward", "=": "forward", "-": "back" };
 
 export class CameraControl {
   readonly camera: PerspectiveCamera;
@@ -32,7 +35,7 @@ export class CameraControl {
   private yaw = 0;
   private pitch = 0;
   private distance = 1; // from the eye to the pivot
-  private readonly keys = new Set<string>();
+  private readonly keys = new Map<string, (typeof KEYS)[string]>(); // held, by their places
   private readonly pointers = new Map<number, { x: number; y: number }>();
   private travelled = 0;
   private pressed = 0;
@@ -167,11 +170,12 @@ export class CameraControl {
     c.addEventListener("pointercancel", (event) => this.pointers.delete(event.pointerId));
     c.addEventListener("keydown", (event) => this.keyDown(event));
     c.addEventListener("keyup", (event) => this.keys.delete(event.code));
-    c.addEventListener("blur", () => this.keys.clear());
+    c.addEventListener("blur", () => this.blur());
   }
 
   private press(event: PointerEvent): void {
     this.canvas.focus({ preventScroll: true });
+    this.canvas.classList.add("pointed");
     this.canvas.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, { x: event.offsetX, y: event.offsetY });
     // A second finger does not count as a tap.
@@ -208,11 +212,18 @@ export class CameraControl {
     this.onTap(event.offsetX, event.offsetY, event.shiftKey || held);
   }
 
+  private blur(): void {
+    this.keys.clear();
+    this.canvas.classList.remove("pointed");
+  }
+
   private keyDown(event: KeyboardEvent): void {
-    if (event.ctrlKey || event.metaKey || event.altKey || !KEYS[event.code]) return;
+    if (!MODIFIERS.includes(event.key)) this.canvas.classList.remove("pointed");
+    const motion = CHARACTERS[event.key] ?? KEYS[event.code];
+    if (isShortcut(event) || !motion) return;
     event.preventDefault();
     const first = this.keys.size === 0;
-    this.keys.add(event.code);
+    this.keys.set(event.code, motion);
     if (!first) return;
     this.lastKeyFrame = performance.now() - 1000 / 60; // a short press moves too
     this.keyFrame(event.shiftKey);
@@ -223,7 +234,7 @@ export class CameraControl {
     const now = performance.now();
     const seconds = Math.min(0.1, (now - this.lastKeyFrame) / 1000);
     this.lastKeyFrame = now;
-    for (const key of this.keys) this.act(KEYS[key]!, seconds, shift);
+    for (const motion of this.keys.values()) this.act(motion, seconds, shift);
     requestAnimationFrame(() => this.keyFrame(shift));
   }
 

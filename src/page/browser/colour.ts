@@ -1,4 +1,4 @@
-// Colour: the sRGB curve, and viridis as in the program's own false-colour pictures.
+// Colour: the sRGB curve, viridis as in the program's own false-colour pictures, and a map for signed values.
 import type { Rgb } from "./container";
 
 /** Every 16th of viridis' 256 published colours, and the last (sRGB); ../../render/colour_map.cpp. */
@@ -18,10 +18,24 @@ export function viridis(t: number): Rgb {
   return low.map((x, c) => x + share * (high[c]! - x)) as Rgb;
 }
 
+/** RdBu of ColorBrewer 2.0, 11 classes, from blue to red (sRGB). */
+const RED_BLUE = [
+  0x053061, 0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xf4a582, 0xd6604d, 0xb2182b, 0x67001f];
+
+/** sRGB, 0 to 255. `t` 0 to 1; 0.5 is nearly white. */
+export function redBlue(t: number): Rgb {
+  const at = Math.min(1, Math.max(0, t)) * (RED_BLUE.length - 1);
+  const k = Math.min(Math.floor(at), RED_BLUE.length - 2);
+  const low = channels(RED_BLUE[k]!), high = channels(RED_BLUE[k + 1]!);
+  return low.map((x, c) => x + (at - k) * (high[c]! - x)) as Rgb;
+}
+
+export type ColourMap = (t: number) => Rgb;
+
 /** RGBA bytes of 256 steps. */
-export function viridisTable(): Uint8Array {
+export function tableOf(map: ColourMap): Uint8Array {
   const table = new Uint8Array(256 * 4);
-  for (let k = 0; k < 256; ++k) table.set([...viridis(k / 255).map(Math.round), 255], k * 4);
+  for (let k = 0; k < 256; ++k) table.set([...map(k / 255).map(Math.round), 255], k * 4);
   return table;
 }
 

@@ -14,6 +14,7 @@ export interface MaterialInfo {
   reflectance: Rgb;
   emission: Rgb; // exitance, W/m^2
   textured: boolean;
+  factor: Rgb; // reflectance that its texture multiplies; without one it is `reflectance`
 }
 
 export interface Header {

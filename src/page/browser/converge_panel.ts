@@ -83,6 +83,7 @@ export class ConvergePanel {
 
   private pause(): void {
     this.playing = false;
+    this.wantsNext = false; // a frame that is under way is kept, not shown
     clearTimeout(this.timer);
     this.sayPlaying();
   }
@@ -162,14 +163,16 @@ export class ConvergePanel {
     const facts = element("run-facts");
     facts.dataset["residual"] = frame ? String(frame.residual) : "";
     facts.dataset["change"] = frame ? String(frame.change) : "";
+    const within = this.viewer.shared
+      ? " Light within unknowns is an estimate: a patch's stored irradiance changes as its unknown's does." : "";
     if (!frame) {
-      facts.textContent = "From B = E on, with the materials as they are now.";
+      facts.textContent = `From B = E on, with the materials as they are now.${within}`;
       return;
     }
     const { residualNote, figures } = wordsOf(this.method);
     const words = [`Residual ${short(frame.residual)}${residualNote}`];
     if (Number.isFinite(frame.change)) words.push(`largest change ${short(frame.change)}`);
     if (told) words.push(`circles: the program's ${figures}`);
-    facts.textContent = `${words.join("; ")}.`;
+    facts.textContent = `${words.join("; ")}.${within}`;
   }
 }

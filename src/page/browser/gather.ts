@@ -1,6 +1,7 @@
 // Gathering, pass after pass: every eye looks at the scene in its present light; then B = E + rho
 // H. Pass k adds the k-th bounce.
 import type { PageData, Rgb } from "./container";
+import { Batch } from "./gather_batch";
 import { Eyes, type EyeMaterials } from "./gather_eyes";
 import { GatherGpu } from "./gather_gpu";
 import type { PatchLight } from "./light";
@@ -31,7 +32,7 @@ export class Gather {
 
   private readonly materials: EyeMaterials;
   private readonly sky: Rgb;
-  private batch = 1;
+  private readonly batch: Batch;
   private told = 0; // time of the last progress
   private running = false;
   private working = false;
@@ -41,6 +42,7 @@ export class Gather {
   constructor(data: PageData, light: PatchLight, tint: Rgb, resolution: number) {
     this.eyes = new Eyes(data);
     this.gpu = new GatherGpu(data, this.eyes, resolution);
+    this.batch = new Batch(this.gpu.software ? SOFTWARE_BATCH_MS : BATCH_MS, this.gpu.capacity);
     this.materials = this.eyes.materials(light);
     this.sky = data.header.sky.map((x, b) => x * tint[b]!) as Rgb;
     this.gpu.setLight(this.eyes.corners(this.materials.emission));
@@ -79,15 +81,10 @@ export class Gather {
 
   /** Lets as many eyes look as a batch has time for. */
   private async someEyes(): Promise<void> {
-    const budget = this.gpu.software ? SOFTWARE_BATCH_MS : BATCH_MS;
     const begin = performance.now();
-    const looks = this.gpu.look(this.state.eyes, this.batch, this.sky);
+    const looks = this.gpu.look(this.state.eyes, this.batch.size, this.sky);
     await this.gpu.done();
-    const took = performance.now() - begin;
-    if (looks === this.batch || took > budget) { // ignores batches cut short at the end of a row
-      const wanted = Math.round((looks * budget) / Math.max(took, 1));
-      this.batch = Math.max(1, Math.min(wanted, 2 * this.batch, this.gpu.capacity));
-    }
+    this.batch.took(looks, performance.now() - begin);
     this.state.eyes += looks;
     const ended = this.state.eyes === this.eyes.count;
     if (ended) await this.endPass();

@@ -1,26 +1,22 @@
 // The panel of gathering: start, pause, forget, and compare each pass with the matrix solution.
 import { Gather } from "./gather";
 import { reflectedDifference } from "./gather_eyes";
-import type { PatchLight } from "./light";
 import { counted, element, make, on, select, short } from "./ui";
 import type { Viewer } from "./viewer";
 
 export class GatherPanel {
   private gather: Gather | null = null;
-  private base: PatchLight | null = null; // the matrix solution it is compared with
+  private reflectance: Float32Array | null = null; // of patches, in the light that is gathered
   private running = false;
 
-  constructor(private readonly viewer: Viewer) {
+  /** `onBegin`: the light is about to be the matrix solution, then the gathered one. */
+  constructor(private readonly viewer: Viewer, private readonly onBegin: () => void) {
     on("gather-start", "click", () => this.toggle());
-    on("gather-reset", "click", () => {
-      const shown = this.viewer.source === "gathered";
-      const base = this.base;
-      this.forget();
-      if (shown && base) this.viewer.showSolved(base);
-    });
-    on("gather-resolution", "change", () => this.forget());
+    on("gather-reset", "click", () => this.reset());
+    on("gather-resolution", "change", () => this.reset());
     viewer.listen("light", () => {
-      if (this.base && viewer.source !== "gathered" && viewer.light !== this.base) this.forget(); // relit meanwhile
+      const relit = viewer.solved.reflectance !== this.reflectance;
+      if (this.gather && (viewer.source === "run" || relit)) this.forget();
     });
     if (viewer.data.eyePosition.length === 0) {
       this.refuse("This page was written without eyes; write it again with radiosity view.");
@@ -43,22 +39,27 @@ export class GatherPanel {
   forget(): void {
     this.gather?.close();
     this.gather = null;
-    this.base = null;
     this.running = false;
     element("gather-passes").replaceChildren();
     this.say();
   }
 
+  private reset(): void {
+    this.forget();
+    if (this.viewer.source === "gathered") this.viewer.showSolved();
+  }
+
   private begin(): void {
     const { viewer } = this;
-    if (viewer.source === "run") element("to-stored").click(); // we compare with a solution, not an iterate
+    this.onBegin();
+    viewer.showSolved(); // we compare with a solution, not an iterate
     try {
-      this.gather = new Gather(viewer.data, viewer.light, viewer.sky, Number(select("gather-resolution").value));
+      this.gather = new Gather(viewer.data, viewer.solved, viewer.sky, Number(select("gather-resolution").value));
     } catch (error) {
       this.refuse((error as Error).message);
       return;
     }
-    this.base = viewer.light;
+    this.reflectance = viewer.solved.reflectance;
     this.gather.onPass = (irradiance) => this.take(irradiance);
     this.gather.viewerMoves = () => viewer.stage.moving;
     this.gather.onProgress = () => this.say();
@@ -69,8 +70,8 @@ export class GatherPanel {
   }
 
   private take(irradiance: Float32Array): void {
-    const difference = reflectedDifference(this.viewer.data, irradiance, this.base!);
-    this.viewer.showGathered(irradiance, this.base!);
+    const difference = reflectedDifference(this.viewer.data, irradiance, this.viewer.solved);
+    this.viewer.showGathered(irradiance);
     const pass = this.gather!.state.pass;
     const figure = make("data", { value: String(difference) }, `${short(100 * difference)}%`);
     element("gather-passes").prepend(

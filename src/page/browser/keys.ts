@@ -3,7 +3,7 @@
 import type { ConvergePanel } from "./converge_panel";
 import type { GatherPanel } from "./gather_panel";
 import { clearPicks, pickAt } from "./patch_panel";
-import { choose, element, input } from "./ui";
+import { choose, element, input, isShortcut } from "./ui";
 import type { Viewer } from "./viewer";
 
 export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: GatherPanel): void {
@@ -33,7 +33,7 @@ export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: Gathe
   };
   document.addEventListener("keydown", (event) => {
     const free = document.activeElement === canvas || document.activeElement === document.body;
-    if (!free || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (!free || isShortcut(event)) return;
     const act = actions[event.key.toLowerCase()];
     if (!act) return;
     event.preventDefault();

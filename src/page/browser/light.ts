@@ -78,11 +78,11 @@ export function patchIrradiance(
   return result;
 }
 
-/** A patch's value after its material's changed from `before` to `now`: textures and overrides are kept. */
-function followed(value: number, before: number, now: number, plain: boolean): number {
+/** A patch's value after its material's changed from `before` to `now`: a texture is multiplied. */
+function followed(value: number, before: number, now: number, textured: boolean): number {
   if (now === before) return value;
-  if (plain || before === 0) return now;
-  return (value * now) / before;
+  if (!textured) return now;
+  return before === 0 ? value : (value * now) / before;
 }
 
 /** The largest difference of a patch's value from its material's that may be rounding to 32 bits. */
@@ -92,16 +92,31 @@ function isPlain(values: Float32Array, at: number, of: Rgb): boolean {
   return of.every((value, b) => Math.abs(values[at + b]! - value) <= SAME * Math.max(1, Math.abs(value)));
 }
 
-export interface Relit extends Omit<PatchLight, "irradiance"> {
-  /** The number of patches whose reflectance would be above 1 (bright texels) and is limited to 1. */
-  limited: number;
+/** The properties of a material in which its patches differ. */
+export interface Textured {
+  reflectance: boolean;
+  emission: boolean;
+}
+
+export function texturedMaterials(data: PageData): Textured[] {
+  const { materials, surfaces } = data.header;
+  const textured = materials.map(() => ({ reflectance: false, emission: false }));
+  for (let i = 0; i < data.area.length; ++i) {
+    const m = surfaces[data.surface[i]!]!.material;
+    const material = materials[m];
+    if (!material?.textured) continue;
+    for (const property of ["reflectance", "emission"] as const) {
+      textured[m]![property] ||= !isPlain(data[property], i * BANDS, material[property]);
+    }
+  }
+  return textured;
 }
 
 /** The emission and reflectance of patches for these materials. */
-export function withMaterials(data: PageData, states: MaterialState[]): Relit {
+export function withMaterials(data: PageData, states: MaterialState[]): Omit<PatchLight, "irradiance"> {
   const emission = new Float32Array(data.emission.length);
   const reflectance = new Float32Array(data.reflectance.length);
-  let limited = 0;
+  const textured = texturedMaterials(data);
   for (let i = 0; i < data.area.length; ++i) {
     const material = data.header.surfaces[data.surface[i]!]!.material;
     const before = data.header.materials[material];
@@ -112,21 +127,15 @@ export function withMaterials(data: PageData, states: MaterialState[]): Relit {
       reflectance.set(data.reflectance.subarray(at, at + BANDS), at);
       continue;
     }
-    const emits = data.emission[at]! + data.emission[at + 1]! + data.emission[at + 2]! > 0;
-    const plainEmission = isPlain(data.emission, at, before.emission);
-    const plainReflectance = isPlain(data.reflectance, at, before.reflectance);
-    let above = false;
+    const of = textured[material]!;
     for (let b = 0; b < BANDS; ++b) {
-      const e = followed(data.emission[at + b]!, before.emission[b]!, now.emission[b]!, plainEmission);
-      emission[at + b] = emits ? e : data.emission[at + b]!;
+      emission[at + b] = followed(data.emission[at + b]!, before.emission[b]!, now.emission[b]!, of.emission);
       const rho = followed(
-        data.reflectance[at + b]!, before.reflectance[b]!, now.reflectance[b]!, plainReflectance);
-      reflectance[at + b] = Math.min(1, rho);
-      above ||= rho > 1;
+        data.reflectance[at + b]!, before.reflectance[b]!, now.reflectance[b]!, of.reflectance);
+      reflectance[at + b] = Math.min(1, rho); // 32 bits may round to more
     }
-    if (above) ++limited;
   }
-  return { emission, reflectance, limited };
+  return { emission, reflectance };
 }
 
 export function materialsOfUnknowns(data: PageData, light: Omit<PatchLight, "irradiance">, sky: Rgb): Materials {

@@ -10,7 +10,10 @@ function decodeSlice(text: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-/** `progress` is called with the share of the text that is decoded, 0 to 1. */
+/**
+ * `progress` is called with the share of the text that is decoded, 0 to 1. Throws an Error with one clear line
+ * if the data are damaged; gzip has a checksum of them.
+ */
 export async function unpack(base64: string, progress: (share: number) => void): Promise<ArrayBuffer> {
   const text = base64.trim();
   let next = 0;
@@ -23,5 +26,9 @@ export async function unpack(base64: string, progress: (share: number) => void):
       await new Promise((resume) => setTimeout(resume)); // lets the browser draw the bar
     },
   });
-  return new Response(compressed.pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  try {
+    return await new Response(compressed.pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  } catch {
+    throw new Error("The page's data are damaged; write the page again with radiosity view");
+  }
 }

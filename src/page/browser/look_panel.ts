@@ -1,6 +1,6 @@
 // The panel of the view: exposure, tone mapping, surfaces, false colour with its legend, before and
 // after.
-import { toSrgb, viridis } from "./colour";
+import { toSrgb } from "./colour";
 import { toneIndex, type Tone } from "./shading";
 import type { Surfaces } from "./scene";
 import { element, input, make, on, onChoice, select, short } from "./ui";
@@ -34,22 +34,27 @@ function showLegend(viewer: Viewer): void {
   const why = shown === "factors" ? whyNoFactors(viewer) : null;
   element("legend-title").textContent = TITLES[shown] + (why ? `: ${why}` : logarithmic ? " (grey: 0)" : "");
   element("legend-bar").hidden = element("legend-ticks").hidden = why !== null;
-  const stops = Array.from({ length: 17 }, (_, k) => `rgb(${viridis(k / 16).map(Math.round).join(" ")})`);
+  const stops = Array.from({ length: 17 }, (_, k) => `rgb(${viewer.colourMap(k / 16).map(Math.round).join(" ")})`);
   element("legend-bar").style.background = `linear-gradient(to right, ${stops.join(",")})`;
   element("legend-bar").setAttribute("aria-label", `Colours from ${short(low)} to ${short(high)}`);
   const at = (t: number) => (logarithmic ? low * (high / low) ** t : low + t * (high - low));
-  element("legend-ticks").replaceChildren(...[0, 0.25, 0.5, 0.75, 1].map((t) => make("span", {}, short(at(t)))));
+  const { extremes } = viewer;
+  const signs = [extremes.low < low ? "≤ " : "", "", "", "", extremes.high > high ? "≥ " : ""];
+  element("legend-ticks").replaceChildren(...signs.map((sign, k) => make("span", {}, sign + short(at(k / 4)))));
   if (!viewer.range) {
     input("range-low").value = short(low);
     input("range-high").value = short(high);
   }
 }
 
+/** Of the sky's brightness: it is shown a little darker, so that a surface as bright as it, or white, stands out. */
+const SKY_SHARE = 0.88;
+
 /** Shows the sky behind the scene. */
 function showSky(viewer: Viewer): void {
   const sky = viewer.data.header.sky.map((x, b) => x * viewer.sky[b]! * 2 ** viewer.uniforms.exposure.value);
   if (!viewer.data.header.sky.some((x) => x > 0)) return;
-  const bytes = sky.map((x) => Math.round(255 * toSrgb(Math.min(1, Math.max(0, x)))));
+  const bytes = sky.map((x) => Math.round(255 * SKY_SHARE * toSrgb(Math.min(1, Math.max(0, x)))));
   element("stage").style.background = `rgb(${bytes.join(" ")})`;
 }
 
@@ -70,11 +75,13 @@ function setUpExposure(viewer: Viewer): void {
 
 function setUpRange(viewer: Viewer): void {
   const given = () => {
-    const low = Number(input("range-low").value), high = Number(input("range-high").value);
+    const high = Number(input("range-high").value);
+    const low = viewer.scale === "diverging" ? -high : Number(input("range-low").value);
     const positive = !viewer.uniforms.logarithmic.value || low > 0;
     const wrong = !(high > low) || !positive;
     input("range-high").setCustomValidity(wrong ? "The range must rise, above 0 on a logarithmic scale" : "");
     if (wrong) return void input("range-high").reportValidity();
+    if (viewer.scale === "diverging") input("range-low").value = String(low);
     viewer.range = { low, high };
     viewer.refreshView();
   };
@@ -102,6 +109,11 @@ function setUpSplit(viewer: Viewer): void {
   };
   on("before-after", "change", apply);
   on("split", "input", apply);
+  viewer.listen("light", () => {
+    const gathered = viewer.source === "gathered";
+    element("split-before").textContent = gathered ? "Matrix solution" : "Stored";
+    element("split-now").textContent = gathered ? "Gathered" : "Now";
+  });
 }
 
 /** Chooses the scale: logarithmic at first for form factors, which span decades, linear for others. */
@@ -109,6 +121,8 @@ function scaleFor(viewer: Viewer, shown: Show): void {
   const logarithmic = shown === "factors";
   viewer.uniforms.logarithmic.value = logarithmic;
   input("logarithmic").checked = logarithmic;
+  element("logarithmic-row").hidden = viewer.scale === "diverging";
+  input("range-low").disabled = viewer.scale === "diverging"; // it is the other end's opposite
   viewer.range = null;
 }
 

@@ -1,6 +1,7 @@
 // Starts the page: unpacks and checks its data, draws, and gives the solver its matrix.
 import { readContainer, type PageData } from "./container";
 import { ConvergePanel } from "./converge_panel";
+import { fail, isCutShort } from "./failure";
 import { GatherPanel } from "./gather_panel";
 import { setUpKeys } from "./keys";
 import { unpack } from "./load";
@@ -19,14 +20,6 @@ async function loading(share: number, text: string): Promise<void> {
   element<HTMLProgressElement>("loading-bar").value = share;
   element("loading-text").textContent = text;
   await new Promise((resume) => setTimeout(resume)); // lets it be drawn
-}
-
-function fail(error: unknown): void {
-  element("app").hidden = true;
-  element("loading").hidden = false;
-  element("loading").classList.add("failed");
-  element("loading").setAttribute("role", "alert");
-  element("loading-text").textContent = error instanceof Error ? error.message : String(error);
 }
 
 async function readPage(): Promise<PageData> {
@@ -91,7 +84,7 @@ function setUpPanels(viewer: Viewer): void {
   const converge = new ConvergePanel(viewer);
   const relight = new RelightPanel(viewer, () => converge.forget());
   setUpCamera(viewer);
-  const gather = new GatherPanel(viewer);
+  const gather = new GatherPanel(viewer, () => converge.forget());
   setUpKeys(viewer, converge, gather);
   viewer.control.onTap = (x, y, second) => pickAt(viewer, x, y, second);
   on("open-help", "click", () => element<HTMLDialogElement>("help").showModal());
@@ -117,7 +110,7 @@ async function begin(): Promise<void> {
   element("app").hidden = false; // the canvas needs its size
   const viewer = new Viewer(data, element<HTMLCanvasElement>("picture"));
   element("no-picture").hidden = viewer.stage.draws;
-  viewer.solver.onFailure = (message) => fail(new Error(`The solver stopped: ${message}`));
+  viewer.solver.onFailure = (message) => fail(`The solver stopped: ${message}`);
   await loading(0.8, "Decoding form factors…");
   await viewer.start();
   setUpPanels(viewer);
@@ -131,4 +124,6 @@ async function begin(): Promise<void> {
   document.documentElement.dataset["ready"] = String(Math.round(performance.now())); // ms, tests wait for it
 }
 
-begin().catch(fail);
+document.addEventListener("DOMContentLoaded", () => {
+  if (!isCutShort()) begin().catch((error: unknown) => fail(error instanceof Error ? error.message : String(error)));
+});

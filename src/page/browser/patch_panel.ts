@@ -45,16 +45,21 @@ function pair(viewer: Viewer): HTMLElement | string {
   if (!first?.row || !second?.row) return "";
   const { unknown, unknownArea } = viewer.data;
   const i = unknown[first.patch]!, j = unknown[second.patch]!;
+  const [one, other] = viewer.shared ? [`unknown ${i}`, `unknown ${j}`] : [first.patch, second.patch];
+  const areas: [string, Node][] = viewer.shared
+    ? [[`Area of ${one}, m²`, number(unknownArea[i]!)], [`Area of ${other}, m²`, number(unknownArea[j]!)]] : [];
   const there = first.row[j]!, back = second.row[i]!;
   const power = unknownArea[i]! * there, powerBack = unknownArea[j]! * back;
   const apart = power > 0 ? Math.abs(power - powerBack) / power : 0;
   return make("section", { "data-pick": "pair" }, make("h3", {}, "What they exchange"), list([
-    [`F from ${first.patch} to ${second.patch}`, number(there)],
-    [`F from ${second.patch} to ${first.patch}`, number(back)],
+    [`F from ${one} to ${other}`, number(there)],
+    [`F from ${other} to ${one}`, number(back)],
+    ...areas,
     ["A F there, m²", number(power)],
     ["A F back, m²", number(powerBack)],
     ["Reciprocity, difference", number(apart)],
-  ]), make("p", { class: "note" }, "One of each pair is stored; the other follows from A₁F₁₂ = A₂F₂₁."));
+  ]), make("p", { class: "note" }, (viewer.shared ? "Patches share unknowns, which these form factors are of. " : "") +
+    "One of each pair is stored; the other follows from A₁F₁₂ = A₂F₂₁."));
 }
 
 export function setUpPatch(viewer: Viewer): void {
@@ -75,7 +80,7 @@ export function setUpPatch(viewer: Viewer): void {
     const field = input(`pick-${name}`);
     field.max = String(viewer.data.header.patches - 1);
     field.addEventListener("change", () => {
-      if (field.reportValidity()) viewer.pick(name, field.value === "" ? null : Number(field.value));
+      if (field.reportValidity()) void viewer.pick(name, field.value === "" ? null : Number(field.value));
     });
   }
   on("paint", "change", () => {
@@ -86,11 +91,20 @@ export function setUpPatch(viewer: Viewer): void {
 }
 
 export function clearPicks(viewer: Viewer): void {
-  for (const name of NAMES) viewer.pick(name, null);
+  for (const name of NAMES) void viewer.pick(name, null);
 }
 
-/** Picks the patch at a pixel; clears the pick if there is none. */
+/** Picks the patch at a pixel. If there is none it clears that pick, the first one with the second. */
 export function pickAt(viewer: Viewer, x: number, y: number, second: boolean): void {
-  viewer.pick(second ? "second" : "first", viewer.patchAt(x, y));
+  const name = second ? "second" : "first";
+  const patch = viewer.patchAt(x, y);
   element<HTMLDetailsElement>("patch-panel").open = true;
+  if (patch === null && !second) clearPicks(viewer);
+  else void viewer.pick(name, patch).then(() => bringIntoSight(name));
+}
+
+/** Scrolls the panels to the exchange of two picks, or else to the facts of this one. */
+function bringIntoSight(name: MarkName): void {
+  const [pair, facts] = ["pair", name].map((of) => document.querySelector(`[data-pick="${of}"]`));
+  (pair ?? facts)?.scrollIntoView({ block: "nearest" });
 }

@@ -2,7 +2,7 @@
 
 import { short } from "./ui";
 
-const WIDTH = 300, HEIGHT = 150, LEFT = 40, RIGHT = 8, TOP = 8, BOTTOM = 30;
+const WIDTH = 300, HEIGHT = 150, LEFT = 52, RIGHT = 8, TOP = 8, BOTTOM = 30;
 const SVG = "http://www.w3.org/2000/svg";
 
 export interface Point {
@@ -38,6 +38,8 @@ export function drawPlot(into: HTMLElement, run: Point[], told: Point[], now: nu
   svg.append(shape("text", { x: LEFT, y: HEIGHT - BOTTOM + 14 }, "0"),
     shape("text", { x: WIDTH - RIGHT, y: HEIGHT - BOTTOM + 14, "text-anchor": "end" },
       short(Number(most.toPrecision(2)))),
+    shape("text", { x: 10, y: (TOP + HEIGHT - BOTTOM) / 2, "text-anchor": "middle",
+                    transform: `rotate(-90 10 ${(TOP + HEIGHT - BOTTOM) / 2})` }, "residual"),
     shape("text", { x: (LEFT + WIDTH) / 2, y: HEIGHT - 4, "text-anchor": "middle" }, axis),
     shape("polyline", { class: "run", points: run.map((p) => `${x(p.x)},${y(p.y)}`).join(" ") }));
   for (const p of told) svg.append(shape("circle", { class: "told", cx: x(p.x), cy: y(p.y), r: 3.5 }));

@@ -1,6 +1,7 @@
 // The panel of lamps and materials that the viewer changes, with an equivalent command line.
 import { chromaOf, hexOf } from "./colour";
 import type { Rgb } from "./container";
+import { texturedMaterials, type Textured } from "./light";
 import type { Relighting } from "./solver_client";
 import { copy, counted, element, make, on, short } from "./ui";
 import type { Viewer } from "./viewer";
@@ -9,23 +10,40 @@ const STRONGEST = 4; // times what it was
 
 interface Row {
   name: string;
+  note: string;
   get: () => Rgb;
   set: (value: Rgb) => void;
   stored: Rgb;
-  most: number; // of the slider: the largest band
+  limits: Rgb; // largest values of bands
   unit: string;
+  /** The program's option for the present value; null: it has none. */
+  option: () => string | null;
 }
 
 const largest = (value: Rgb): number => Math.max(...value);
 const times = (value: Rgb, factor: number): Rgb => value.map((x) => x * factor) as Rgb;
 const same = (a: Rgb, b: Rgb): boolean => a.every((x, k) => x === b[k]);
-/** A number with enough digits for the command line to give the same light. */
-const digits = (x: number): string => String(Number(x.toPrecision(7)));
+const limited = (value: Rgb, limits: Rgb): Rgb => value.map((x, k) => Math.min(x, limits[k]!)) as Rgb;
+const uniform = (x: number): Rgb => [x, x, x];
+/** Numbers with enough digits for the command line to give the same light. */
+const digits = (value: Rgb): string => value.map((x) => Number(x.toPrecision(7))).join(",");
+/** The same, never rounded up: the program refuses a tint that brings a reflectance above 1. */
+const digitsBelow = (value: Rgb): string => value.map((x) => Math.floor(x * 1e6) / 1e6).join(",");
+/** A name as a shell reads it. */
+const quoted = (name: string): string => (/^[\w.-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`);
+
+/** What is said of a texture: the largest factor that the program allows. */
+function textureNote(factor: Rgb): string {
+  const most = 1 / largest(factor);
+  return `, textured; at most ${short(most)} times its reflectance`;
+}
 
 export class RelightPanel {
   private readonly rows: { row: Row; refresh: () => void }[] = [];
+  private readonly textured: Textured[];
 
   constructor(private readonly viewer: Viewer, private readonly onChange: () => void) {
+    this.textured = texturedMaterials(viewer.data);
     const { materials, surfaces, sky } = viewer.data.header;
     const used = materials.map((_, k) => k).filter((k) => surfaces.some((s) => s.material === k));
     const lamps = used.filter((k) => largest(materials[k]!.emission) > 0);
@@ -48,28 +66,41 @@ export class RelightPanel {
 
   private lamp(k: number): Row {
     const { name, emission } = this.viewer.data.header.materials[k]!;
+    const textured = this.textured[k]!.emission;
+    const get = () => this.viewer.states[k]!.emission;
     return {
-      name, stored: emission, most: STRONGEST * largest(emission), unit: "W/m²",
-      get: () => this.viewer.states[k]!.emission,
+      name, note: textured ? ", textured" : "", stored: emission, unit: "W/m²",
+      limits: uniform(STRONGEST * largest(emission)),
+      get,
       set: (value) => { this.viewer.states[k]!.emission = value; },
+      option: () => (textured ? null : `--set ${quoted(name)}.emission=${digits(get())}`),
     };
   }
 
   private sky(): Row {
     const stored = this.viewer.data.header.sky;
+    const get = () => stored.map((x, b) => x * this.viewer.sky[b]!) as Rgb;
     return {
-      name: "sky", stored, most: STRONGEST * largest(stored), unit: "W/m²/sr",
-      get: () => stored.map((x, b) => x * this.viewer.sky[b]!) as Rgb,
+      name: "sky", note: "", stored, limits: uniform(STRONGEST * largest(stored)), unit: "W/m²/sr",
+      get,
       set: (value) => { this.viewer.sky = value.map((x, b) => (stored[b]! > 0 ? x / stored[b]! : 0)) as Rgb; },
+      option: () => `--sky ${digits(get())}`,
     };
   }
 
   private material(k: number): Row {
-    const { name, reflectance } = this.viewer.data.header.materials[k]!;
+    const { name, reflectance, factor } = this.viewer.data.header.materials[k]!;
+    const textured = this.textured[k]!.reflectance;
+    const get = () => this.viewer.states[k]!.reflectance;
+    const tint = () => get().map((x, b) => (reflectance[b]! > 0 ? x / reflectance[b]! : 1)) as Rgb;
+    const most = (x: number, b: number) => (x > 0 ? x / factor[b]! : 0);
     return {
-      name, stored: reflectance, most: 1, unit: "",
-      get: () => this.viewer.states[k]!.reflectance,
+      name, note: textured ? textureNote(factor) : "", stored: reflectance, unit: "",
+      limits: textured ? (reflectance.map(most) as Rgb) : uniform(1),
+      get,
       set: (value) => { this.viewer.states[k]!.reflectance = value; },
+      option: () => (textured ? `--set ${quoted(name)}.tint=${digitsBelow(tint())}`
+        : `--set ${quoted(name)}.reflectance=${digits(get())}`),
     };
   }
 
@@ -82,7 +113,8 @@ export class RelightPanel {
     // We keep the colour, also when the strength is 0.
     let chroma = largest(row.stored) > 0 ? times(row.stored, 1 / largest(row.stored)) : ([1, 1, 1] as Rgb);
     const colour = make("input", { type: "color", "aria-label": `${row.name}: colour` }) as HTMLInputElement;
-    const slider = make("input", { type: "range", min: "0", max: String(row.most), step: "any",
+    const most = largest(row.limits);
+    const slider = make("input", { type: "range", min: "0", max: String(most), step: "any",
       "aria-label": `${row.name}: ${what}` }) as HTMLInputElement;
     const output = make("output");
     const back = make("button", { type: "button", "aria-label": `Reset ${row.name}` }, "Reset") as HTMLButtonElement;
@@ -100,7 +132,8 @@ export class RelightPanel {
       say();
     };
     const change = (value: Rgb) => {
-      row.set(value);
+      row.set(limited(value, row.limits));
+      slider.value = String(largest(row.get()));
       say();
       this.changed();
     };
@@ -111,7 +144,7 @@ export class RelightPanel {
       const by = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }[event.key];
       if (!by) return;
       event.preventDefault();
-      slider.value = String(Math.min(row.most, Math.max(0, Number(slider.value) + (by * row.most) / 100)));
+      slider.value = String(Math.min(most, Math.max(0, Number(slider.value) + (by * most) / 100)));
       slider.dispatchEvent(new Event("input", { bubbles: true }));
     });
     colour.addEventListener("input", () => {
@@ -125,8 +158,9 @@ export class RelightPanel {
     });
     this.rows.push({ row, refresh });
     refresh();
+    const label = make("span", { class: "label" }, row.name, make("span", { class: "note" }, row.note));
     return make("div", { class: "relight", "data-name": row.name, "data-what": what },
-      make("span", { class: "label" }, row.name), colour, back, slider, output);
+      label, colour, back, slider, output);
   }
 
   private changed(): void {
@@ -136,25 +170,17 @@ export class RelightPanel {
     this.viewer.relight();
   }
 
-  /** The options of the program that give this light. */
-  private options(): string[] {
-    const options: string[] = [];
-    for (const { row } of this.rows) {
-      const value = row.get();
-      if (same(value, row.stored)) continue;
-      const numbers = value.map(digits).join(",");
-      const name = /^[\w.-]+$/.test(row.name) ? row.name : `'${row.name.replaceAll("'", "'\\''")}'`;
-      if (row.unit === "W/m²/sr") options.push(`--sky ${numbers}`);
-      else options.push(`--set ${name}.${row.unit ? "emission" : "reflectance"}=${numbers}`);
-    }
-    return options;
-  }
-
+  /** Says which options of the program give this light, and what none gives. */
   private sayCommand(): void {
-    const options = this.options();
+    const changed = this.rows.map(({ row }) => row).filter((row) => !same(row.get(), row.stored));
+    const options = changed.map((row) => row.option()).filter((option) => option !== null);
+    const without = changed.filter((row) => row.option() === null).map((row) => row.name);
+    element<HTMLButtonElement>("relight-reset").disabled = changed.length === 0;
     element("command-row").hidden = options.length === 0;
-    element<HTMLButtonElement>("relight-reset").disabled = options.length === 0;
     element("command").textContent = `radiosity solve RESULTS.h5 ${options.join(" ")}`;
+    element("command-note").hidden = without.length === 0;
+    element("command-note").textContent = `No option gives the changed emission of ${without.join(", ")}: ` +
+      "--set would replace its texture by one value. (A weight for all of its light: solve --basis, then --mix.)";
   }
 
   private sayRelit(light: Relighting): void {
@@ -166,8 +192,6 @@ export class RelightPanel {
       : light.finished ? `Not converged after ${work}: this room keeps nearly all its light.` : `Solving: ${work}.`;
     facts.dataset["state"] = solved ? "solved" : light.finished ? "failed" : "solving";
     facts.dataset["milliseconds"] = String(light.milliseconds);
-    const more = this.viewer.limited > 0
-      ? [`${counted(this.viewer.limited)} textured patches are held at a reflectance of 1.`] : [];
-    facts.textContent = [words, ...more].join(" ");
+    facts.textContent = words;
   }
 }

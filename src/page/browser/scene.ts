@@ -22,13 +22,13 @@ export class SceneMeshes {
   private readonly elements: Mesh;
   private readonly lines: LineSegments;
   private readonly lineUniforms;
-  private light: { now: Float32Array; stored: Float32Array };
-  private values: { now: Float32Array; stored: Float32Array; smooth: boolean };
+  private light: { now: Float32Array; before: Float32Array };
+  private values: { now: Float32Array; before: Float32Array; smooth: boolean };
 
   constructor(private readonly data: PageData, uniforms: Uniforms) {
     const none = new Float32Array(0);
-    this.light = { now: none, stored: none };
-    this.values = { now: none, stored: none, smooth: false };
+    this.light = { now: none, before: none };
+    this.values = { now: none, before: none, smooth: false };
     this.patches = new Mesh(this.patchGeometry(), patchMaterial(uniforms));
     this.elements = new Mesh(this.elementGeometry(), elementMaterial(uniforms));
     this.hasElements = data.elementTriangle.length > 0;
@@ -38,25 +38,25 @@ export class SceneMeshes {
     this.group.add(this.patches, this.elements, this.lines);
   }
 
-  /** Radiosity of patches, N*3, now and as stored. */
-  setLight(now: Float32Array, stored: Float32Array): void {
-    this.light = { now, stored };
+  /** Radiosity of patches, N*3, now and before. */
+  setLight(now: Float32Array, before: Float32Array): void {
+    this.light = { now, before };
     this.fill("light", now, 3, this.surfaces === "smooth");
-    this.fill("storedLight", stored, 3, this.surfaces === "smooth");
+    this.fill("lightBefore", before, 3, this.surfaces === "smooth");
   }
 
-  /** Sets the values for false colour, N, now and as stored; `smooth`: they may be interpolated. */
-  setValues(now: Float32Array, stored: Float32Array, smooth: boolean): void {
-    this.values = { now, stored, smooth };
+  /** Sets the values for false colour, N, now and before; `smooth`: they may be interpolated. */
+  setValues(now: Float32Array, before: Float32Array, smooth: boolean): void {
+    this.values = { now, before, smooth };
     const interpolated = smooth && this.surfaces === "smooth";
     this.fill("value", now, 1, interpolated);
-    this.fill("storedValue", stored, 1, interpolated);
+    this.fill("valueBefore", before, 1, interpolated);
   }
 
   setSurfaces(surfaces: Surfaces): void {
     this.surfaces = surfaces;
-    if (this.light.now.length > 0) this.setLight(this.light.now, this.light.stored);
-    if (this.values.now.length > 0) this.setValues(this.values.now, this.values.stored, this.values.smooth);
+    if (this.light.now.length > 0) this.setLight(this.light.now, this.light.before);
+    if (this.values.now.length > 0) this.setValues(this.values.now, this.values.before, this.values.smooth);
   }
 
   setLineColour(colour: Color): void {
@@ -101,8 +101,8 @@ export class SceneMeshes {
     patchTriangle.forEach((vertex, k) => corners.set(position.subarray(vertex * 3, vertex * 3 + 3), k * 3));
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(corners, 3));
-    for (const name of ["light", "storedLight"]) geometry.setAttribute(name, dynamic(patchTriangle.length, 3));
-    for (const name of ["value", "storedValue"]) geometry.setAttribute(name, dynamic(patchTriangle.length, 1));
+    for (const name of ["light", "lightBefore"]) geometry.setAttribute(name, dynamic(patchTriangle.length, 3));
+    for (const name of ["value", "valueBefore"]) geometry.setAttribute(name, dynamic(patchTriangle.length, 1));
     return geometry;
   }
 

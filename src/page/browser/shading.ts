@@ -3,13 +3,10 @@
 import {
   ClampToEdgeWrapping, Color, DataTexture, LinearFilter, RGBAFormat, ShaderMaterial, type IUniform,
 } from "three";
-import { viridisTable } from "./colour";
+import { tableOf, viridis, type ColourMap } from "./colour";
 
 export type Tone = "linear" | "reinhard" | "filmic";
 const TONES: Tone[] = ["linear", "reinhard", "filmic"];
-
-/** A missing value; drawn in grey. */
-export const NO_VALUE = -1e30;
 
 export interface Uniforms {
   [name: string]: IUniform;
@@ -20,17 +17,21 @@ export interface Uniforms {
   low: IUniform<number>;
   high: IUniform<number>;
   map: IUniform<DataTexture>;
-  stored: IUniform<boolean>; // the light as stored, not as it is now
+  before: IUniform<boolean>; // the light before, not as it is now
+}
+
+export function mapTexture(map: ColourMap): DataTexture {
+  const texture = new DataTexture(tableOf(map), 256, 1, RGBAFormat);
+  texture.magFilter = texture.minFilter = LinearFilter;
+  texture.wrapS = ClampToEdgeWrapping;
+  texture.needsUpdate = true;
+  return texture;
 }
 
 export function makeUniforms(): Uniforms {
-  const map = new DataTexture(viridisTable(), 256, 1, RGBAFormat);
-  map.magFilter = map.minFilter = LinearFilter;
-  map.wrapS = ClampToEdgeWrapping;
-  map.needsUpdate = true;
   return {
     exposure: { value: 0 }, tone: { value: 0 }, showValue: { value: false }, logarithmic: { value: false },
-    low: { value: 0 }, high: { value: 1 }, map: { value: map }, stored: { value: false },
+    low: { value: 0 }, high: { value: 1 }, map: { value: mapTexture(viridis) }, before: { value: false },
   };
 }
 
@@ -52,7 +53,7 @@ const DISPLAY = /* glsl */ `
   }
 `;
 
-/** Triangles of patches; attributes light, storedLight (vec3, W/m^2), value, storedValue. */
+/** Triangles of patches; attributes light, lightBefore (vec3, W/m^2), value, valueBefore. */
 export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
   return new ShaderMaterial({
     uniforms,
@@ -61,14 +62,14 @@ export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
     polygonOffsetFactor: 1,
     polygonOffsetUnits: 1,
     vertexShader: /* glsl */ `
-      attribute vec3 light, storedLight;
-      attribute float value, storedValue;
-      uniform bool stored;
+      attribute vec3 light, lightBefore;
+      attribute float value, valueBefore;
+      uniform bool before;
       varying vec3 vLight;
       varying float vValue;
       void main() {
-        vLight = stored ? storedLight : light;
-        vValue = stored ? storedValue : value;
+        vLight = before ? lightBefore : light;
+        vValue = before ? valueBefore : value;
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: /* glsl */ `

@@ -44,7 +44,7 @@ class Mark {
 export type MarkName = "first" | "second";
 
 export class Stage {
-  /** The share of the width that shows the stored light; null: all shows the present light. */
+  /** The share of the width that shows the light before; null: all shows the present light. */
   split: number | null = null;
   /** Whether the finer mesh may replace the patches in both halves. */
   elements = true;
@@ -146,9 +146,9 @@ export class Stage {
     if (left < width) this.half(this.renderer, left, width - left, height, false);
   }
 
-  private half(renderer: WebGLRenderer, left: number, width: number, height: number, stored: boolean): void {
+  private half(renderer: WebGLRenderer, left: number, width: number, height: number, before: boolean): void {
     renderer.setScissor(left, 0, width, height);
-    this.uniforms.stored.value = stored;
+    this.uniforms.before.value = before;
     const elements = this.elements && (!this.moving || !this.pace || this.pace.elements);
     this.meshes.arrange(elements && !this.uniforms.showValue.value);
     renderer.render(this.scene, this.control.camera);

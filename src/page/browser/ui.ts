@@ -39,6 +39,11 @@ export function number(value: number): HTMLElement {
 
 export const counted = (count: number): string => count.toLocaleString("en");
 
+/** Whether a key belongs to the browser. AltGr, which gives characters, is Ctrl and Alt in Windows. */
+export function isShortcut(event: KeyboardEvent): boolean {
+  return event.metaKey || ((event.ctrlKey || event.altKey) && !event.getModifierState("AltGraph"));
+}
+
 /** The value of the selected radio button of a group. */
 export function onChoice(name: string, act: (value: string) => void): void {
   for (const radio of document.querySelectorAll<HTMLInputElement>(`input[name="${name}"]`)) {

@@ -3,7 +3,9 @@
 import { Color, Vector3 } from "three";
 import { TriangleTree } from "./bvh";
 import { CameraControl } from "./camera";
+import { redBlue, viridis, type ColourMap } from "./colour";
 import type { PageData, Rgb } from "./container";
+import { automaticRange, extremes, NO_VALUE, type Range, type Scale } from "./false_colour";
 import {
   luminance, materialsOfUnknowns, patchIrradiance, radiosityOf, withMaterials, unknownMeans,
   type MaterialState, type PatchLight,
@@ -11,7 +13,7 @@ import {
 import type { Method } from "./methods";
 import type { Frame, Materials } from "./protocol";
 import { SceneMeshes, type Surfaces } from "./scene";
-import { makeUniforms, NO_VALUE } from "./shading";
+import { makeUniforms, mapTexture } from "./shading";
 import { SolverClient, type Relighting } from "./solver_client";
 import { type MarkName, Stage } from "./stage";
 
@@ -39,15 +41,16 @@ export class Viewer {
   show: Show = "light";
   paint = true;
   elements = true;
-  range: { low: number; high: number } | null = null; // null: that of the values
+  range: Range | null = null; // null: that of the values
+  extremes: Range = { low: 0, high: 0 }; // of the values that have a colour
   sky: Rgb = [1, 1, 1];
   states: MaterialState[];
-  limited = 0; // patches held at a reflectance of 1
   readonly picks: Record<MarkName, Picked | null> = { first: null, second: null };
 
+  private readonly maps = { rising: this.uniforms.map.value, diverging: mapTexture(redBlue) };
   private readonly tree: TriangleTree;
   private reference: Float32Array | null = null;
-  private solved: PatchLight; // by the matrix; gathered light is compared with it
+  solved: PatchLight; // by the matrix, for the present materials
   private materials: Materials;
   private runs = 0;
   private readonly listeners: Record<string, (() => void)[]> = {};
@@ -101,7 +104,7 @@ export class Viewer {
     this.reference = loaded.reference;
     whenIdle(() => this.solver.warm());
     this.solver.onRelit = (light) => {
-      if (this.source === "relit") this.take(light.irradiance, light.ofPatches);
+      this.takeSolution(light);
       this.relitListener(light);
     };
     this.solver.onFrame = (frame) => {
@@ -111,58 +114,60 @@ export class Viewer {
 
   /** Solves again with `states` and `sky`. */
   relight(): void {
-    this.materialsChanged();
-    this.source = "relit";
-    this.take(null);
+    this.solved = { ...withMaterials(this.data, this.states), irradiance: this.solved.irradiance };
+    this.materials = materialsOfUnknowns(this.data, this.solved, this.sky);
     this.solver.relight(this.materials);
+    this.showSolved();
   }
 
   toStored(): void {
+    this.solved = this.stored;
+    this.materials = materialsOfUnknowns(this.data, this.stored, this.sky);
+    this.showSolved();
+  }
+
+  /** Shows the matrix solution; a run that is watched ends. */
+  showSolved(): void {
     ++this.runs;
-    this.source = "stored";
-    this.light = this.stored;
+    this.source = this.solved === this.stored ? "stored" : "relit";
+    this.light = this.solved;
     this.refreshLight();
   }
 
   startRun(method: Method): void {
-    this.materialsChanged();
     this.solver.start(++this.runs, method, this.materials);
   }
   stepRun(): void { this.solver.step(this.runs); }
 
   showFrame(frame: Frame): void {
     this.source = "run";
-    this.take(frame.irradiance);
+    this.light = { ...this.solved, irradiance: patchIrradiance(this.data, frame.irradiance, this.reference) };
+    this.refreshLight();
   }
 
-  /** Shows irradiance of patches, gathered with the materials of `solved`, the matrix solution to compare with. */
-  showGathered(irradiance: Float32Array, solved: PatchLight): void {
-    this.solved = solved;
+  /** Shows irradiance of patches, gathered with the present materials. */
+  showGathered(irradiance: Float32Array): void {
     this.source = "gathered";
-    this.light = { ...solved, irradiance };
+    this.light = { ...this.solved, irradiance };
     this.refreshLight();
   }
 
-  /** Returns from gathered light to the matrix solution. */
-  showSolved(solved: PatchLight): void {
-    this.source = solved === this.stored ? "stored" : "relit";
-    this.light = solved;
-    this.refreshLight();
-  }
+  /** The light that the picture is compared with, side by side. */
+  get before(): PatchLight { return this.source === "gathered" ? this.solved : this.stored; }
 
-  pick(name: MarkName, patch: number | null): void {
+  /** Resolves when the row of the patch is there. */
+  async pick(name: MarkName, patch: number | null): Promise<void> {
     const picked = patch === null ? null : { patch, row: null as Float32Array | null };
     this.picks[name] = picked;
     this.mark(name);
     this.refreshValues();
     this.tell("picks");
     if (!picked) return;
-    void this.solver.rows([this.data.unknown[picked.patch]!]).then(([row]) => {
-      picked.row = row!;
-      if (this.picks[name] !== picked) return;
-      this.refreshValues();
-      this.tell("rows");
-    });
+    const [row] = await this.solver.rows([this.data.unknown[picked.patch]!]);
+    picked.row = row!;
+    if (this.picks[name] !== picked) return;
+    this.refreshValues();
+    this.tell("rows");
   }
 
   /** The patch under a pixel of the canvas, or null. */
@@ -182,6 +187,7 @@ export class Viewer {
   resetView(): void {
     this.control.reset();
     this.pivotOnScene();
+    this.control.onMove(); // the text of the camera has the pivot
   }
 
   /** The quantity that is shown: a picked patch's form factors replace the light, unless a run is watched. */
@@ -207,20 +213,16 @@ export class Viewer {
     const falseColour = shown !== "light";
     this.uniforms.showValue.value = falseColour;
     this.stage.elements = this.elements && this.source === "stored";
-    if (falseColour) {
-      const { low, high } = this.range ?? this.span();
-      this.uniforms.low.value = low;
-      this.uniforms.high.value = high > low ? high : low + Math.max(Math.abs(low), 1) * 1e-6;
-    }
+    if (falseColour) this.setColours(this.values(shown, this.light));
     this.stage.draw();
     this.tell("view");
   }
 
   refreshValues(): void {
     const now = this.values(this.shown(), this.light);
-    const stored = this.values(this.shown(), this.stored);
+    const before = this.values(this.shown(), this.before);
     const smooth = ["radiosity", "irradiance", "difference"].includes(this.shown());
-    this.meshes.setValues(now, stored, smooth);
+    this.meshes.setValues(now, before, smooth);
     this.refreshView();
   }
 
@@ -237,48 +239,42 @@ export class Viewer {
       case "row-error": return ofUnknown(data.rowError);
       case "factors": return ofUnknown(this.picks.first?.row ?? null);
       case "difference": {
-        const solved = luminance(radiosityOf(this.source === "gathered" ? this.solved : this.stored));
+        const solved = luminance(radiosityOf(this.solved));
         return luminance(radiosityOf(light)).map((value, i) => value - solved[i]!);
       }
     }
   }
 
-  private materialsChanged(): void {
-    const { emission, reflectance, limited } = withMaterials(this.data, this.states);
-    this.limited = limited;
-    this.light = { emission, reflectance, irradiance: this.light.irradiance };
-    this.materials = materialsOfUnknowns(this.data, this.light, this.sky);
-  }
-
-  /** Takes irradiance of unknowns, and of patches if known; without both it stays as it was. */
-  private take(irradiance: Float32Array | null, ofPatches: Float32Array | null = null): void {
-    if (irradiance) {
-      this.light = {
-        ...this.light, irradiance: ofPatches ?? patchIrradiance(this.data, irradiance, this.reference),
-      };
-    }
+  /** Takes the solution, or the way to it, of the latest change; after a return to stored light it is of no use. */
+  private takeSolution({ irradiance, ofPatches }: Relighting): void {
+    if (this.solved === this.stored) return;
+    const isShown = this.light === this.solved;
+    this.solved = { ...this.solved, irradiance: ofPatches ?? patchIrradiance(this.data, irradiance, this.reference) };
+    if (isShown) this.light = this.solved;
     this.refreshLight();
   }
 
   private refreshLight(): void {
-    this.meshes.setLight(radiosityOf(this.light), radiosityOf(this.stored));
+    this.meshes.setLight(radiosityOf(this.light), radiosityOf(this.before));
     this.refreshValues();
     this.tell("light");
   }
 
-  /** The range of the shown values; a few very bright patches (lamps) do not set its end. */
-  private span(): { low: number; high: number } {
-    const all = this.values(this.shown(), this.light).filter((value) => value !== NO_VALUE).sort();
-    if (all.length === 0) return { low: 0, high: 1 };
-    const highest = all[all.length - 1]!;
-    const most = all[Math.floor(0.99 * (all.length - 1))]!;
-    const high = highest > 2 * most && most > 0 ? most : highest;
-    if (this.uniforms.logarithmic.value) {
-      const least = all.find((value) => value > 0) ?? 1e-6;
-      return { low: Math.max(least, high * 1e-4), high };
-    }
-    const around = this.shown() === "row-sum" || this.shown() === "difference";
-    return { low: around ? all[0]! : Math.min(0, all[0]!), high };
+  get scale(): Scale {
+    if (this.shown() === "difference") return "diverging";
+    if (this.uniforms.logarithmic.value) return "logarithmic";
+    return this.shown() === "row-sum" ? "fitted" : "rising";
+  }
+
+  get colourMap(): ColourMap { return this.scale === "diverging" ? redBlue : viridis; }
+
+  private setColours(values: Float32Array): void {
+    const { scale, uniforms } = this;
+    const { low, high } = this.range ?? automaticRange(values, scale);
+    this.extremes = extremes(values, scale);
+    uniforms.low.value = low;
+    uniforms.high.value = high > low ? high : low + Math.max(Math.abs(low), 1) * 1e-6;
+    uniforms.map.value = scale === "diverging" ? this.maps.diverging : this.maps.rising;
   }
 
   private mark(name: MarkName): void {

@@ -3,7 +3,9 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { folder, irradiance, launch, module, open, pageData, program, relativeError, results } from "./support.mjs";
+import {
+  apart, colours, folder, half, irradiance, launch, module, open, pageData, program, relativeError, results,
+} from "./support.mjs";
 
 let browser;
 before(async () => {
@@ -83,7 +85,20 @@ async function gathered(page, passes) {
   );
 }
 
-test("three passes, started by the keyboard, give the light of radiosity gather", async () => {
+/** The frames that the browser drew while the first pass ran, and the longest time between two. */
+const framesOfPass = (page) =>
+  page.evaluate(async () => {
+    let [frames, longest, last] = [0, 0, performance.now()];
+    while (Number(document.getElementById("gather-facts").dataset.pass) < 1) {
+      const now = await new Promise(requestAnimationFrame);
+      longest = Math.max(longest, now - last);
+      last = now;
+      ++frames;
+    }
+    return { frames, longest };
+  });
+
+test("three passes, started by the keyboard, give the light of radiosity gather", async (t) => {
   const { page, said } = await open(browser, "small.html");
   await page.evaluate(() => {
     for (const id of ["gather-panel", "patch-panel"]) document.getElementById(id).open = true;
@@ -92,6 +107,9 @@ test("three passes, started by the keyboard, give the light of radiosity gather"
   await page.locator("#gather-start").focus();
   await page.keyboard.press("Enter");
   assert.equal(await page.locator("#gather-start").textContent(), "Pause");
+  const { frames, longest } = await framesOfPass(page);
+  t.diagnostic(`${frames} frames in a pass of software, the longest ${longest.toFixed(0)} ms`);
+  assert.ok(frames > 10 && longest < 2000, `${frames} frames, ${longest} ms`); // a batch takes 60 ms of a quiet machine
   await gathered(page, 3);
   await page.locator("#picture").focus();
   await page.keyboard.press("g");
@@ -147,6 +165,93 @@ test("three passes, started by the keyboard, give the light of radiosity gather"
   assert.equal(await page.locator("#source").textContent(), "Light as stored");
   assert.deepEqual(said, []);
   await page.close();
+});
+
+test("gathering starts from the matrix solution, also after relighting, a run, and another resolution", async () => {
+  const { page, said } = await open(browser, "small.html");
+  await page.evaluate(() => {
+    for (const id of ["gather-panel", "patch-panel", "relight-panel", "converge-panel"])
+      document.getElementById(id).open = true;
+  });
+  const says = (words) =>
+    page.waitForFunction((words) => document.getElementById("source").textContent.includes(words), words);
+  const press = async (key) => {
+    await page.locator("#picture").focus();
+    await page.keyboard.press(key);
+  };
+  const patches = [3, 77, 200, 399];
+  const stored = await irradiance(page, patches);
+  await page.locator('.relight[data-name="white"][data-what="reflectance"] input[type=range]').focus();
+  for (let k = 0; k < 3; ++k) await page.keyboard.press("PageDown");
+  await page.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
+  const command = await page.locator("#command").textContent();
+  const solution = await irradiance(page, patches);
+  assert.ok(relativeError(stored, solution) > 0.2);
+  await press("Escape");
+  const relit = await colours(page);
+
+  // The run ends at the solution for the same materials.
+  await page.locator("#show").selectOption("difference");
+  await page.locator("#speed").press("End");
+  await page.locator("#play").click();
+  await page.waitForFunction(() => {
+    const [play, iteration] = ["play", "iteration"].map((id) => document.getElementById(id));
+    return play.textContent === "Play" && Number(iteration.max) > 3;
+  });
+  const farthest = Number(await page.locator("#range-high").inputValue());
+  assert.ok(farthest < 1e-2 * Math.max(...solution), `${farthest} of ${Math.max(...solution)}`);
+  await page.locator("#show").selectOption("light");
+  await page.locator("#iteration").press("Home");
+  await says("sweep 0");
+
+  await page.locator("#gather-resolution").selectOption("32");
+  await press("g");
+  await says("Relit");
+  assert.deepEqual(await irradiance(page, patches), solution);
+  assert.equal(await page.locator("#command").textContent(), command);
+  await press("Escape");
+  await gathered(page, 1);
+  await press("g"); // pause
+  await says("Gathered");
+  await press("b");
+  assert.equal(await page.locator("#split-before").textContent(), "Matrix solution");
+  const both = await colours(page);
+  assert.ok(apart(half(both, true), half(relit, true)) < 0.5, "the left half must be the matrix solution");
+  assert.ok(apart(half(both, false), half(relit, false)) > 2, "the right half must be the light of one bounce");
+
+  await page.locator("#gather-resolution").selectOption("64");
+  await says("Relit");
+  assert.deepEqual(await irradiance(page, patches), solution);
+  await press("g");
+  await gathered(page, 1);
+  await page.locator("#gather-reset").click();
+  await says("Relit");
+  assert.equal(await page.locator("#split-before").textContent(), "Stored");
+  assert.deepEqual(await irradiance(page, patches), solution);
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+// The clock of this test advances by what an eye takes.
+test("the eyes of a frame take no longer than its budget, also when they become slower", async () => {
+  const { Batch } = await module("gather_batch");
+  const batch = new Batch(16, 500);
+  const frames = (anEye, count) => Array.from({ length: count }, () => {
+    const took = batch.size * anEye;
+    batch.took(batch.size, took);
+    return took;
+  });
+  assert.ok(Math.max(...frames(0.1, 20)) <= 1.05 * 16);
+  assert.equal(batch.size, 160);
+  const [first, ...later] = frames(1, 5); // one frame is late, of 160 ms
+  assert.equal(first, 160);
+  assert.ok(Math.max(...later) <= 1.05 * 16, `${later}`);
+  frames(100, 3);
+  assert.equal(batch.size, 1, "one eye at least");
+  frames(0.001, 20);
+  assert.equal(batch.size, 500, "no more than there is room for");
+  batch.took(3, 1);
+  assert.equal(batch.size, 500, "the short batch at the end of a pass says nothing");
 });
 
 test("while the viewer moves software draws coarsely and gathers nothing; then both are as before", async () => {

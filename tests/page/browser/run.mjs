@@ -15,7 +15,8 @@ if (!program) {
 /** Parts of the page that node runs by themselves. */
 const modules = [
   ...["factors", "solver", "relight", "vector_product", "session", "within"],
-  ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks", "pace"],
+  ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks", "gather_batch", "pace"],
+  "false_colour",
 ];
 const sources = join(folder, "source");
 const tests = join(folder, "tests");
@@ -45,7 +46,7 @@ function install(from, to) {
 function makePage(template, name, scene, options, looks = []) {
   const results = join(pages, `${name}.h5`),
     made = join(pages, `${name}.made.html`);
-  run(program, ["solve", join(root, "data", scene), "-o", results, "--quiet", ...options]);
+  run(program, ["solve", resolve(root, "data", scene), "-o", results, "--quiet", ...options]);
   run(program, ["view", results, "-o", made, "--quiet", ...looks]);
   const data = readFileSync(made, "utf8").match(/<script id="radiosity-data"[^]*?<\/script>/)[0];
   writeFileSync(
@@ -79,6 +80,7 @@ makePage(template, "cornell", "cornell-box.obj", []);
 makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", "jacobi"]);
 makePage(template, "sweeps", "cornell-box.obj", ["--patches", "400", "--solver", "gauss-seidel"]);
 makePage(template, "shared", "furnished-room.obj", ["--patches", "200"], ["--elements", "off"]);
+makePage(template, "textured", join(here, "textured.obj"), ["--patches", "150", "--sky", "0.5,0.6,0.8"]);
 writeFileSync(join(pages, "empty.html"), template);
 
 const files = readdirSync(tests)

@@ -76,3 +76,31 @@ export function relativeError(values, truth) {
   });
   return Math.sqrt(difference / size);
 }
+
+/** Colours of a grid of points of the picture, sRGB 0 to 255; the browser itself decodes the screenshot. */
+export async function colours(where) {
+  await where.waitForFunction(() => !document.getElementById("picture").hasAttribute("data-moving"));
+  await where.waitForTimeout(150);
+  const png = (await where.locator("#picture").screenshot()).toString("base64");
+  return where.evaluate(async (data) => {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d", { willReadFrequently: true });
+    context.drawImage(image, 0, 0);
+    const points = [];
+    for (let y = 0.05; y < 1; y += 0.1) {
+      for (let x = 0.05; x < 1; x += 0.1)
+        points.push(...context.getImageData(x * image.width, y * image.height, 1, 1).data.slice(0, 3));
+    }
+    return points;
+  }, png);
+}
+/** Root mean square. */
+export const apart = (a, b) => Math.sqrt(a.reduce((sum, x, k) => sum + (x - b[k]) ** 2, 0) / a.length);
+
+/** Of these colours, those of the picture's left or right half. */
+export const half = (values, left) => values.filter((_, k) => Math.floor(k / 3) % 10 < 5 === left);
+
+/** A computed style of the first element of `selector`. */
+export const style = (where, selector, name) =>
+  where.locator(selector).first().evaluate((e, property) => getComputedStyle(e)[property], name);
