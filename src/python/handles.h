@@ -34,7 +34,7 @@ struct FactorsHandle {
 
 struct SolutionHandle {
   std::shared_ptr<const FactorsHandle> factors;
-  PatchMaterials materials;
+  std::shared_ptr<const PatchMaterials> materials;  ///< in the mesh's handle, or its own
   Solution solution;
   Key key;
 };

@@ -37,13 +37,14 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
   auto handle = std::make_shared<SolutionHandle>();
   handle->factors = std::move(factors);
   const FactorsHandle& of = *handle->factors;
-  PatchMaterials& materials = handle->materials;
   if (given_materials) {
     const auto& [reflectance, emission, sky] = *given_materials;
-    materials = {int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission), sky};
+    handle->materials = std::make_shared<const PatchMaterials>(
+        PatchMaterials{int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission), sky});
   } else {
-    materials = of.mesh->materials;
+    handle->materials = {of.mesh, &of.mesh->materials};
   }
+  const PatchMaterials& materials = *handle->materials;
   const bool short_steps = of.factors.matrix.size() <= kShortStepRows;
   (short_steps ? runShortSteps : runLong)(report, [&](Progress& progress) {
     if (!of.mesh) {
@@ -55,7 +56,7 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
   });
   handle->key = [options, self = handle.get()] {
     const FactorsHandle& made_of = *self->factors;
-    return keyOfSolution(options, self->materials, made_of.key(), made_of.factors.method);
+    return keyOfSolution(options, *self->materials, made_of.key(), made_of.factors.method);
   };
   return handle;
 }
@@ -199,9 +200,9 @@ void addElements(const PatchMesh& mesh, const SolutionHandle& light, const Camer
                  Progress& progress) {
   const std::vector<std::uint8_t> wanted = visiblePatches(mesh, camera, options, progress);
   drawn.elements = std::make_shared<const Elements>(computeElements(
-      mesh, light.materials, light.solution.irradiance, elements, wanted, progress));
-  drawn.reflectance = light.materials.reflectance;
-  drawn.emission = light.materials.emission;
+      mesh, *light.materials, light.solution.irradiance, elements, wanted, progress));
+  drawn.reflectance = light.materials->reflectance;
+  drawn.emission = light.materials->emission;
 }
 
 /// The picture of a solution, or of radiosities (N, bands) if `light` is null.
@@ -229,7 +230,7 @@ py::array render(const MeshHandle& mesh, const SolutionHandle* light,
                              {}};
   Image image;
   runLong(report, [&](Progress& progress) {
-    const PatchMaterials& materials = light != nullptr ? light->materials : plain;
+    const PatchMaterials& materials = light != nullptr ? *light->materials : plain;
     const bool closed = light != nullptr && light->factors->factors.report.closed;
     SurfaceLight drawn = surfaceLight(spanOf(radiosity), materials);
     if (!camera) {
@@ -274,8 +275,8 @@ void bindLight(py::module_& module) {
   };
   light_rows("radiosity", [](const S& s) -> const auto& { return s.solution.radiosity; });
   light_rows("irradiance", [](const S& s) -> const auto& { return s.solution.irradiance; });
-  light_rows("reflectance", [](const S& s) -> const auto& { return s.materials.reflectance; });
-  light_rows("emission", [](const S& s) -> const auto& { return s.materials.emission; });
+  light_rows("reflectance", [](const S& s) -> const auto& { return s.materials->reflectance; });
+  light_rows("emission", [](const S& s) -> const auto& { return s.materials->emission; });
   solution.def_property_readonly("summary", [](const S& s) { return dictOf(s.solution.summary); });
   solution.def_property_readonly("usable", [](const S& s) { return s.solution.summary.usable(); });
   solution.def_property_readonly(

@@ -43,7 +43,7 @@ py::dict read(const std::string& path) {
   if (results.factors) dict["form_factors"] = factors;
   if (results.solution && results.materials && results.factors) {
     light->factors = factors;
-    light->materials = std::move(*results.materials);
+    light->materials = std::make_shared<const PatchMaterials>(std::move(*results.materials));
     light->solution = std::move(*results.solution);
     light->key = kept(results.solution_key);
     dict["solution"] = light;
@@ -70,7 +70,7 @@ void save(const std::string& path, const FactorsHandle& factors, const SolutionH
     results.mesh_key = mesh.key();
     results.factors_key = factors.key();
     if (light != nullptr) {
-      results.materials = light->materials;
+      results.materials = *light->materials;
       results.solution = light->solution;
       results.solution_key = light->key();
     }

@@ -171,6 +171,7 @@ void bindMesh(py::module_& module) {
   type.def_property_readonly("surface_names",
                              [](const M& m) { return m.result.mesh.surface_names; });
   type.def_property_readonly("unknowns", [](const M& m) { return m.result.mesh.unknowns(); });
+  type.def_property_readonly("has_scene", [](const M& m) { return m.scene != nullptr; });
   type.def_property_readonly("scene",
                              [](const M& m) { return std::const_pointer_cast<Scene>(m.scene); });
   type.def_property_readonly("report", [](const M& m) { return python::dictOf(m.result.report); });

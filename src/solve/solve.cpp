@@ -100,11 +100,12 @@ void SolveOptions::validate() const {
   }
 }
 
-Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
-                   std::span<const double> emission, int bands, const SolveOptions& options,
-                   Progress& progress, const PatchNames& names, std::span<const double> sky,
-                   std::span<const double> more) {
-  const Stopwatch watch;
+namespace {
+
+Solution solveUntimed(const FormFactors& factors, std::span<const double> reflectance,
+                      std::span<const double> emission, int bands, const SolveOptions& options,
+                      Progress& progress, const PatchNames& names, std::span<const double> sky,
+                      std::span<const double> more) {
   options.validate();
   checkSizes(factors, reflectance, emission, sky, bands, names);
   checkMaterials(reflectance, emission, bands, names);
@@ -143,7 +144,19 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
   for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
   summary.energy = energyAccount(factors, reflectance, {emission, from_sky}, solution.radiosity,
                                  solution.irradiance, bands);
-  summary.seconds = watch.seconds();
+  return solution;
+}
+
+}  // namespace
+
+Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
+                   std::span<const double> emission, int bands, const SolveOptions& options,
+                   Progress& progress, const PatchNames& names, std::span<const double> sky,
+                   std::span<const double> more) {
+  const Stopwatch watch;
+  Solution solution =
+      solveUntimed(factors, reflectance, emission, bands, options, progress, names, sky, more);
+  solution.summary.seconds = watch.seconds();
   return solution;
 }
 

@@ -201,7 +201,7 @@ class Mesh(Fixed):
         return data
 
     def _require_scene(self) -> None:
-        if self._handle.scene is None:
+        if not self._handle.has_scene:
             raise InputError("the mesh is of a results file without a scene; give materials as arrays")
 
     def __repr__(self) -> str:
