@@ -140,6 +140,7 @@ struct HeatConditions {
   std::vector<HeatCondition> conditions;
   std::vector<Index> of_surface;  ///< into conditions; S as PatchMesh::surface_names, or N rows
   ConditionText text{};           ///< the text that they were read from; or empty
+  std::vector<Note> notes{};      ///< on its groups
 };
 
 /// Reads the table at `csv_path` (empty: none), the settings and groups. Errors: as

@@ -12,7 +12,7 @@ namespace radiosity {
 /// `text` as a field: in quotes if it has separators or quotes.
 std::string csvField(std::string_view text);
 
-/// A table with a header line. Lines that are empty (also but for commas) or begin with # are
+/// A table with a header line. Lines that are empty, hold only commas or begin with # are
 /// skipped, and empty columns at the end left out. Lines end in LF, CR LF or CR.
 struct CsvTable {
   struct Row {

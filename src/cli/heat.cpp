@@ -31,7 +31,7 @@ HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   session.report.line("conditions", "those in " + request.input);
   ConditionText text = stored->conditions;
   text.origin = request.input + ": /heat/condition_table";
-  if (!request.groups.empty()) text.groups = request.groups;
+  text.groups.insert(text.groups.begin(), request.groups.begin(), request.groups.end());
   return readHeatConditions(pipeline.scene(), text);
 }
 
@@ -62,6 +62,7 @@ int runHeat(Session& session) {
   PipelineOptions& options = pipeline.options();
   options.heat_conditions = conditionsFor(session, pipeline);
   validate(options.heat_conditions, options.heat);
+  session.report.notes(options.heat_conditions.notes);
   noteLightOptions(session);
   pipeline.factors();
   keepFactors(session, pipeline, files);

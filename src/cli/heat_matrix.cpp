@@ -28,6 +28,7 @@ int heatMatrixFile(Session& session, OutputSet& files) {
   const std::vector<std::string>& names = file.factors.names;
   const HeatConditions conditions = readHeatConditions(names, file.emissivity, text);
   validate(conditions, options);
+  session.report.notes(conditions.notes);
   const FormFactors factors = reportedFactors(session, file);
   HeatSolution heat = solveHeat(factors, HeatRows{conditions.conditions, conditions.of_surface, {}},
                                 options, session.progress);

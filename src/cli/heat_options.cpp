@@ -21,7 +21,7 @@ void addHeatOptions(CLI::App& app, Request& r) {
       "ambient, isothermal. May be repeated");
   add(app, "Heat", "--group", r.groups, "NAME=PATTERN",
       "Join surfaces under one name, for conditions and in tables; * and ? stand for any text and "
-      "any character, the first group that matches has the surface. May be repeated");
+      "any character, a surface belongs to the first group that matches it. May be repeated");
   add(app, "Heat", "--sky-temperature", r.sky_temperature, "K",
       fmt::format("Temperature of the black sky wherever rays leave the scene (default {:g})",
                   defaults.sky_temperature));

@@ -115,8 +115,8 @@ void noteTemperatures(const HeatBalance& b, double given_off,
   for (const SurfaceHeat& s : surfaces) highest = std::max(highest, s.highest);
   if (highest > 0 && highest < kColdest) {
     notes.push_back(
-        {Severity::info, fmt::format("no temperature is above {} K: they are kelvin, not degrees "
-                                     "Celsius",
+        {Severity::info, fmt::format("no temperature is above {} K: were degrees Celsius meant? "
+                                     "All are in kelvin",
                                      numberText(highest))});
   }
 }

@@ -92,16 +92,18 @@ struct InputPath {
 };
 
 std::vector<InputPath> inputsOf(const Request& request) {
+  const bool basis_file = request.basis != "surfaces";
   return {{"the input itself", request.input},
           {"the second input", request.second},
           {"the table of --thermal", request.thermal},
           {"the table of --rows", request.rows},
           {"the file of --areas", request.areas},
-          {"the table of --basis", request.basis},
+          {"the table of --basis", basis_file ? request.basis : ""},
           {"the file of --materials", request.scene.materials_file}};
 }
 
-/// A results file may take up what it was made from; nothing else may replace what is read.
+/// A results file may take up what it was made from; no other output may replace a file that an
+/// option names.
 void requireNoInput(const std::string& path, const Request& request, bool results) {
   for (const InputPath& input : inputsOf(request)) {
     if (input.path.empty() || !sameFile(path, input.path)) continue;

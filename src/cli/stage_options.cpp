@@ -192,8 +192,9 @@ void addTableOptions(CLI::App& app, Request& r) {
       "and .hdf5 patches, others groups)")
       ->check(CLI::IsMember({"groups", "surfaces", "patches"}));
   add(app, "Tables", "--group", r.groups, "NAME=PATTERN",
-      "Join surfaces under one name in tables; * and ? stand for any text and any character, the "
-      "first group that matches has the surface. Patches and form factors stay. May be repeated");
+      "Join surfaces under one name in tables; * and ? stand for any text and any character, a "
+      "surface belongs to the first group that matches it. Patches and form factors stay. May be "
+      "repeated");
   add(app, "Tables", "--layout", r.layout, "wide|long",
       "A row a surface and a column a receiver (wide, default), or a row a pair (long)")
       ->check(CLI::IsMember({"wide", "long"}));

@@ -42,6 +42,7 @@ class Lines {
 
   HeatConditions conditions() {
     HeatConditions out;
+    out.notes = groups_.notes;
     std::map<Same, Index> known;
     for (Index t = 0; t < of_target_.size(); ++t) {
       const Same same{of_target_[t], targets_.emissivityOf(t)};

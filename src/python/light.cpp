@@ -16,9 +16,15 @@
 namespace radiosity::python {
 namespace {
 
-/// Up to this number of rows the longest step of a solve, the direct solver's factorization of the
-/// matrix, takes less than half a second.
+/// Up to this number of rows and bands the longest step of a solve, the direct solver's
+/// factorizations of the matrix, takes about half a second.
 constexpr std::size_t kShortStepRows = 1200;
+constexpr int kShortStepBands = 3;
+
+bool hasShortSteps(const FactorsHandle& of, int bands) {
+  const bool shared = of.mesh && of.mesh->result.mesh.clusters;
+  return !shared && bands <= kShortStepBands && of.factors.matrix.size() <= kShortStepRows;
+}
 
 /// Reflectance and emission, (rows, bands), and the sky's radiance. A row is a patch of the mesh or
 /// a row of the matrix.
@@ -45,8 +51,7 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
     handle->materials = {of.mesh, &of.mesh->materials};
   }
   const PatchMaterials& materials = *handle->materials;
-  const bool short_steps = of.factors.matrix.size() <= kShortStepRows;
-  (short_steps ? runShortSteps : runLong)(report, [&](Progress& progress) {
+  (hasShortSteps(of, materials.bands) ? runShortSteps : runLong)(report, [&](Progress& progress) {
     if (!of.mesh) {
       handle->solution = solve(of.factors, materials.reflectance, materials.emission,
                                materials.bands, options, progress, {}, {}, materials.sky);

@@ -169,9 +169,9 @@ bool pythonEnds() {
 #endif
 }
 
-/// Gives up Python's lock. At the end of the process Python ends threads that ask for the lock, by
-/// an exception that no destructor and no catch may meet; such a thread waits here for its end
-/// instead.
+/// Gives up Python's lock. Once the process ends, Python ends other threads that ask for the lock,
+/// by an exception that no destructor and no catch may meet; such a thread waits here for its end
+/// instead. (It meets the exception if the end begins while it waits for the lock.)
 class Unlocked {
  public:
   Unlocked() = default;
@@ -181,12 +181,13 @@ class Unlocked {
 
   void lock() {
     if (state_ == nullptr) return;
-    while (pythonEnds()) std::this_thread::sleep_for(kBetweenLooks);
+    while (!at_end_ && pythonEnds()) std::this_thread::sleep_for(kBetweenLooks);
     PyEval_RestoreThread(std::exchange(state_, nullptr));
   }
   void unlock() { state_ = PyEval_SaveThread(); }
 
  private:
+  bool at_end_ = pythonEnds();  ///< the thread that ends the process, in a finalizer
   PyThreadState* state_ = PyEval_SaveThread();
 };
 

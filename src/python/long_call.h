@@ -17,8 +17,9 @@ namespace radiosity::python {
 void runLong(const pybind11::object& report, const std::function<void(Progress&)>& work);
 
 /// Like runLong(), on the calling thread, for work that takes at most a few tenths of a second from
-/// one of its steps (Progress::advance()) to the next: to hand a solve of milliseconds to another
-/// thread takes longer than 1% of it. Signals and reports are looked at between steps.
+/// one of its steps (Progress::advance()) to the next: handing a solve of milliseconds to
+/// another thread would cost more than 1% of it. Signals and reports are looked at between steps,
+/// which `work` must not make in parallel tasks.
 void runShortSteps(const pybind11::object& report, const std::function<void(Progress&)>& work);
 
 /// Like runLong(), for work that has no steps at which it could end, such as reading a file. Ctrl-C

@@ -23,7 +23,7 @@ void SceneOptions::validate() const {
   // A Texture counts its pixels with an int.
   if (!(max_image > 0 && max_image <= 2000)) {
     throw InputError(
-        fmt::format("max_image {} is not above 0 and at most 2000 million pixels", max_image));
+        fmt::format("max image {} is not above 0 and at most 2000 million pixels", max_image));
   }
   for (int band = 0; sky && band < 3; ++band) {
     if ((*sky)[band] >= 0 && std::isfinite((*sky)[band])) continue;

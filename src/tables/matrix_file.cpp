@@ -35,9 +35,10 @@ void noteSums(FormFactors& factors) {
                                    [](double sum) { return sum > kMostRowSum; });
   factors.report.notes.push_back(
       {Severity::loud,
-       fmt::format("row {} sums to {:.6g}{}: form factors sum to 1 at most, so light is made here",
-                   largest - factors.fronts.begin() + 1, *largest,
-                   above > 1 ? fmt::format(" ({} rows are above 1)", above) : "")});
+       fmt::format(
+           "row {} sums to {:.6g}{}: form factors sum to 1 at most, and such rows create light",
+           largest - factors.fronts.begin() + 1, *largest,
+           above > 1 ? fmt::format(" ({} rows are above 1)", above) : "")});
 }
 
 void noteReciprocity(FormFactors& factors) {

@@ -437,6 +437,7 @@ TEST(Hollows, TheFloorUnderABlockWithoutABottomIsBuried) {
       EXPECT_EQ(onlyPolygon(built, scene.floor).loops.size(), 2u);
       expectArea(built.report.surfaces[scene.floor].buried, 6);
       EXPECT_EQ(built.report.surfaces[scene.block].buried, 0);
+      EXPECT_TRUE(hasNote(built, "6 m^2 were dropped in dark hollows"));
     });
   }
 }
@@ -486,10 +487,19 @@ TEST(Hollows, HillsUnderTwoBlocksThatShareAWallAreBuried) {
            [&](const Built& built) { expectArea(built.report.surfaces[ground].buried, under); });
 }
 
-TEST(Hollows, ADarkRoomSeenFromInsideIsKept) {
+TEST(Hollows, ADarkRoomOfWhichHalfIsSeenFromInsideIsKept) {
   SceneBuilder b;
   const Index room = b.surface("room");
-  b.box(room, {0, 0, 0}, {5, 4, 3}, false);
+  SceneBuilder whole;
+  whole.surface("room");
+  whole.box(0, {0, 0, 0}, {4, 4, 4}, false);
+  const Scene& scene = whole.scene();
+  for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+    std::vector<Vec3> corners;
+    for (const Index c : scene.face(f)) corners.push_back(scene.vertices[c]);
+    if (f % 2 == 0) std::reverse(corners.begin(), corners.end());
+    b.face(room, corners);
+  }
   bothWays(b.scene(),
            [&](const Built& built) { EXPECT_EQ(built.report.surfaces[room].buried, 0); });
 }

@@ -99,6 +99,16 @@ def test_the_process_ends_while_threads_compute():
     assert run.returncode == 0, run.stderr
 
 
+def test_a_finalizer_at_the_end_may_compute():
+    code = ("import radiosity as rad\n"
+            "F = rad.from_csr([[0, 1], [1, 0]], [1, 1])\n"
+            "class Last:\n"
+            "    def __del__(self, solve=rad.solve, F=F): solve(F, 0.5, [1.0, 0.0])\n"
+            "import builtins\n"
+            "builtins.last = Last()\n")
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
 def test_threads_get_the_same_csr(cornell):
     F = rad.form_factors(cornell.mesh, 0.1)
     found = []

@@ -62,7 +62,7 @@ def ones(F):
     (lambda F: rad.render(F.mesh, ones(F), camera={"eye": (0, 0, 0), "target": (0, 0, 1), "fov": 40}),
      r"^camera: has no property 'fov'; there are: name, .*vertical_fov \(radians\)"),
     (lambda F: rad.displayed(np.zeros((2, 2, 4)), exposure="x"), "^exposure: has dtype <U1"),
-    (lambda F: rad.displayed(np.zeros((2, 2, 4)), exposure=2000), "^exposure: is 2000.0; give stops"),
+    (lambda F: rad.displayed(np.zeros((2, 2, 4)), exposure=2000), "^exposure: is 2000; give stops"),
     (lambda F: rad.Scene(SQUARE, None), "^faces: is of type NoneType; give"),
     (lambda F: rad.Scene(SQUARE, []), "^faces: are none; give at least one"),
     (lambda F: rad.Scene(SQUARE, [0, 1, 2]), "^faces: face 0 is 0; give its corners"),
@@ -263,6 +263,9 @@ def test_broken_sparse_matrices_are_refused():
 
     for change in (start, column, negative):
         refused(lambda: rad.from_csr(broken(change), [1, 1]), "^matrix: is no valid csr matrix: ")
+    places = scipy.sparse.coo_matrix([[0, 1.0], [1.0, 0]])
+    places.row[0] = 10**7
+    refused(lambda: rad.from_csr(places, [1, 1]), "^matrix: is no valid coo matrix: a row is outside 0 to 1")
 
 
 def test_names_of_other_bytes_than_utf8_are_kept(tmp_path):

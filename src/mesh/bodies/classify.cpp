@@ -18,6 +18,9 @@ namespace radiosity {
 
 namespace {
 
+/// The most names in a note.
+constexpr std::size_t kFewNames = 8;
+
 Side opposite(Side side) { return side == kAbove ? kBelow : kAbove; }
 
 /// A sheet of the present cell.
@@ -51,6 +54,7 @@ class Classifier {
 
  private:
   void noteLoneRoom();
+  void noteHollows();
   std::vector<Layer> layersOf(const PlaneCell& cell) const;
   bool seesNothing(Index cell, Side side) const;
   void dropContacts(Index cell, std::vector<Layer>& layers) const;
@@ -71,6 +75,7 @@ class Classifier {
   MeshReport& report_;
   std::map<std::pair<std::string, std::string>, double> outdone_;       ///< (loser, winner): m^2
   std::map<std::pair<std::string, std::string>, double> back_to_back_;  ///< m^2
+  std::map<std::string, double> in_hollows_;                            ///< m^2
 };
 
 std::vector<Layer> Classifier::layersOf(const PlaneCell& cell) const {
@@ -162,7 +167,10 @@ void Classifier::run(Index number, std::vector<VisibleCell>& out) {
   std::vector<Layer> layers = layersOf(cell);
   for (const Side side : {kAbove, kBelow}) {
     if (!seesNothing(number, side)) continue;
-    for (Layer& l : layers) l.kept[side] = false;
+    for (Layer& l : layers) {
+      if (l.kept[side] && hollows_.isDark(number, side)) in_hollows_[nameOf(l)] += cell.area;
+      l.kept[side] = false;
+    }
   }
   dropContacts(number, layers);
   dropOutdone(cell, kAbove, layers);
@@ -210,6 +218,22 @@ void Classifier::writeNotes() {
         {Severity::info, fmt::format("{} and {}: {:.6g} m^2 lie back to back; both were kept",
                                      names.first, names.second, area)});
   }
+  noteHollows();
+}
+
+void Classifier::noteHollows() {
+  double all = 0;
+  std::vector<std::string> names;
+  for (const auto& [name, area] : in_hollows_) {
+    all += area;
+    names.push_back(name);
+  }
+  if (names.empty()) return;
+  report_.notes.push_back(
+      {Severity::info,
+       fmt::format("{:.6g} m^2 were dropped in dark hollows, which are closed, mostly "
+                   "seen from behind and without a light: {}",
+                   all, joinNames(names, kFewNames))});
 }
 
 }  // namespace

@@ -141,25 +141,32 @@ class SpaceSearch {
   bool couldBeHollow(Index root) {
     const Space& space = spaces_[root];
     const double area = space.seen + space.backs;
-    return sets_.find(root) == root && space.seen > 0 && space.backs >= space.seen &&
-           !space.emits && space.volume > 1.5 * area * input_.coincidence;
+    return sets_.find(root) == root && space.seen > 0 && space.backs > space.seen && !space.emits &&
+           space.volume > 1.5 * area * input_.coincidence;
   }
 
-  /// Boxes of all that emits: spaces, and faces that are not cut.
+  /// Boxes of the spaces that emit.
   std::vector<Box3> lights() {
     std::vector<Box3> boxes;
     for (Index k = 0; k < spaces_.size(); ++k) {
       if (sets_.find(k) == k && spaces_[k].emits) boxes.push_back(spaces_[k].box);
     }
-    for (const InputFace& face : input_.uncut) {
-      if (scene_.materials[scene_.surfaces[face.surface].material].emission == Vec3(0.0)) continue;
-      Box3& box = boxes.emplace_back();
-      for (const Index v : face.loop) box.add(input_.points[v]);
-    }
     return boxes;
   }
 
-  /// By root: the spaces that could be hollows, less those whose boxes contain a light's.
+  /// Whether a face that is not cut, and so may be on both sides of others, emits near the box.
+  bool meetsUncutLight(const Box3& box) const {
+    return std::ranges::any_of(input_.uncut, [&](const InputFace& face) {
+      if (scene_.materials[scene_.surfaces[face.surface].material].emission == Vec3(0.0)) {
+        return false;
+      }
+      Box3 own;
+      for (const Index v : face.loop) own.add(input_.points[v]);
+      return own.meets(box);
+    });
+  }
+
+  /// By root: the spaces that could be hollows, without those whose box contains that of a light.
   std::vector<std::uint8_t> hollows() {
     std::vector<std::uint8_t> out(spaces_.size(), 0);
     std::vector<Box3> boxes = lights();
@@ -168,10 +175,12 @@ class SpaceSearch {
     std::vector<Index> root_of;
     for (Index k = 0; k < spaces_.size(); ++k) {
       if (!couldBeHollow(k)) continue;
+      const Box3 box = spaces_[k].box.grown(input_.coincidence);
+      if (meetsUncutLight(box)) continue;
       out[k] = 1;
       candidates.push_back(Index(boxes.size()));
       root_of.push_back(k);
-      boxes.push_back(spaces_[k].box.grown(input_.coincidence));
+      boxes.push_back(box);
     }
     for (const auto& [light, box] : overlappingPairs(boxes, candidates)) {
       if (light >= count || box < count) continue;

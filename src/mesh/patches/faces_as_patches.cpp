@@ -62,7 +62,7 @@ class FacePatches {
   }
 
   PatchMesh build() {
-    // Faces become patches, are merged into polygons, are looked at for T-junctions, for crossings.
+    // Patches, polygons, T-junctions and crossings take a part each.
     constexpr std::size_t kParts = 4;
     const std::size_t faces = scene_.faceCount();
     progress_.begin("faces as patches", kParts * faces);

@@ -115,9 +115,10 @@ void noteBuriedSurfaces(const CoarseComplex& complex, MeshReport& report) {
     const SurfaceAreas& areas = report.surfaces[s];
     if (seen[s] || areas.buried <= 0.5 * areas.given) continue;
     report.notes.push_back(
-        {Severity::loud, fmt::format("{}: lies wholly inside a closed solid and was dropped; if "
-                                     "that is a room, its faces are turned outward",
-                                     areas.name)});
+        {Severity::loud,
+         fmt::format("{}: lies wholly inside a closed solid or a dark hollow and was "
+                     "dropped; if that is a room, its faces are turned outward",
+                     areas.name)});
   }
 }
 

@@ -20,7 +20,7 @@ from ._progress import Progress, reporting
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(Fixed):
     """Form factors between S named surfaces; made by FormFactors.table(). Text of it is Markdown.
 
     names: S texts. area: (S,) m^2, both sides of a two-sided surface. factors: (S, S), where
@@ -158,7 +158,8 @@ class FormFactors(Fixed):
         return self._handle.report
 
     def table(self, groups: Union[str, Sequence[str]] = (), progress: Progress = None) -> Table:
-        """Form factors between surfaces by name; new arrays, read only.
+        """Form factors between surfaces by name. Its arrays are no views; without groups every call
+        returns the same table.
 
         groups: "NAME=PATTERN", one or a list: surfaces that match a pattern of the shell under one
         name.
@@ -311,6 +312,10 @@ def _checked(matrix: Any) -> Any:
     try:
         if hasattr(matrix, "check_format"):
             matrix.check_format(full_check=True)
+        elif matrix.format == "coo":
+            for name, places, size in zip(("row", "column"), (matrix.row, matrix.col), matrix.shape):
+                if len(places) and not 0 <= places.min() <= places.max() < size:
+                    raise ValueError(f"a {name} is outside 0 to {size - 1}")
     except (ValueError, IndexError, TypeError) as error:
         raise InputError(f"matrix: is no valid {matrix.format} matrix: {error}; make it anew from "
                          "its entries") from None

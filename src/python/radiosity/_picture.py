@@ -77,9 +77,9 @@ def displayed(image: np.ndarray, exposure: Optional[float] = None) -> np.ndarray
     0.7354
     """
     picture = np.ascontiguousarray(numbers("image", image, [(None, None, 4)]), dtype=np.float32)
-    stops = _core.exposure(picture) if exposure is None else float(numbers("exposure", exposure, [()]))
-    if not abs(stops) <= 120:
-        raise InputError(f"exposure: is {stops}; give stops, -120 to 120")
+    if exposure is not None and not abs(float(numbers("exposure", exposure, [()]))) <= 120:
+        raise InputError(f"exposure: is {exposure}; give stops, -120 to 120")
+    stops = _core.exposure(picture) if exposure is None else float(exposure)
     linear = np.clip(picture[..., :3] * np.float32(2.0**stops), 0, 1)
     coded = np.where(linear <= 0.0031308, 12.92 * linear,
                      1.055 * np.power(linear, 1 / 2.4, dtype=np.float32) - 0.055)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
+import os
 import sys
 import time
 from contextlib import contextmanager, nullcontext
@@ -35,7 +35,7 @@ class _Line:
         self.write(" ".join(filter(None, [stage, share + count])) + f", {now - self.start:.0f} s")
 
     def write(self, text: str) -> None:
-        text = text[:shutil.get_terminal_size().columns - 1]  # a longer line could not be written over
+        text = text[:_columns() - 1]  # a longer line could not be written over
         sys.stderr.write("\r" + text.ljust(self.width))
         sys.stderr.flush()
         self.width = len(text)
@@ -45,6 +45,13 @@ class _Line:
             self.write("")
             sys.stderr.write("\r")
             sys.stderr.flush()
+
+
+def _columns() -> int:
+    try:
+        return os.get_terminal_size(sys.stderr.fileno()).columns or 80
+    except (OSError, ValueError):  # no terminal, or a notebook's stream
+        return 80
 
 
 def _someone_looks() -> bool:
