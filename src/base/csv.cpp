@@ -14,7 +14,7 @@ namespace {
 
 /// Without blanks at its ends, also those that do not break a line (U+00A0), which come from
 /// documents.
-std::string withoutBlanks(std::string_view text) {
+std::string_view withoutBlanks(std::string_view text) {
   constexpr std::string_view kBlanks[] = {" ", "\t", "\xc2\xa0"};
   for (bool more = true; more;) {
     more = false;
@@ -23,12 +23,18 @@ std::string withoutBlanks(std::string_view text) {
       if (text.ends_with(blank)) text.remove_suffix(blank.size()), more = true;
     }
   }
-  return std::string(text);
+  return text;
 }
 
 bool isBlank(const std::vector<std::string>& fields) {
   return std::ranges::all_of(fields,
                              [](const auto& field) { return withoutBlanks(field).empty(); });
+}
+
+/// Leaves out blank fields at the end, down to `least` fields: spreadsheets write the columns that
+/// they show, to the last that ever held anything.
+void dropBlankEnd(std::vector<std::string>& fields, std::size_t least) {
+  while (fields.size() > least && withoutBlanks(fields.back()).empty()) fields.pop_back();
 }
 
 /// Reads one record at a time; a quoted field may span several lines.
@@ -155,25 +161,22 @@ CsvTable parseCsv(const std::string& path, std::string_view text) {
   if (!reader.next(row)) reader.fail(1, "there is no header line; name the columns in the first");
   requireCommas(reader, row);
   table.header_line = row.line;
-  // Spreadsheets write the columns that they show, to the last that ever held anything.
-  while (withoutBlanks(row.fields.back()).empty()) row.fields.pop_back();
+  dropBlankEnd(row.fields, 1);
   for (const std::string& name : row.fields) {
-    table.header.push_back(withoutBlanks(name));
+    table.header.emplace_back(withoutBlanks(name));
     if (std::count(table.header.begin(), table.header.end(), table.header.back()) > 1) {
       reader.fail(row.line, fmt::format("there are two columns '{}'; name each differently",
                                         table.header.back()));
     }
   }
   while (reader.next(row)) {
-    while (row.fields.size() > table.header.size() && withoutBlanks(row.fields.back()).empty()) {
-      row.fields.pop_back();
-    }
+    dropBlankEnd(row.fields, table.header.size());
     if (row.fields.size() != table.header.size()) {
       reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column, with "
                                         "commas between them and points in numbers",
                                         row.fields.size(), table.header.size()));
     }
-    for (std::string& field : row.fields) field = withoutBlanks(field);
+    for (std::string& field : row.fields) field = std::string(withoutBlanks(field));
     table.rows.push_back(std::move(row));
   }
   return table;

@@ -11,9 +11,6 @@ namespace radiosity::cli {
 
 namespace {
 
-/// --basis: a source for each surface that emits.
-constexpr const char* kSurfaces = "surfaces";
-
 /// Parses "NAME=WEIGHT,NAME=WEIGHT". The last = of each part counts, so that names may have one.
 std::vector<LightWeight> parseMix(const std::string& text) {
   std::vector<LightWeight> weights;
@@ -76,7 +73,7 @@ void chooseSources(const Request& request, Pipeline& pipeline) {
   const PatchMesh& mesh = pipeline.mesh().mesh;
   const PatchMaterials& materials = pipeline.materials();
   std::vector<LightSource>& sources = pipeline.options().sources;
-  if (request.basis != kSurfaces) {
+  if (request.basis != kBasisOfSurfaces) {
     sources = readLightSources(request.basis, pipeline.scene(), mesh, materials.bands);
     return;
   }

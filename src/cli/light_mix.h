@@ -11,6 +11,9 @@
 
 namespace radiosity::cli {
 
+/// --basis: a source for each surface that emits. Other values name a table.
+inline constexpr const char* kBasisOfSurfaces = "surfaces";
+
 /// Throws InputError if --basis and --mix contradict other options, before any work is done.
 void checkMix(const Request& request, const OutputSet& files);
 

@@ -8,6 +8,7 @@
 
 #include "base/figure_text.h"
 #include "base/file_name.h"
+#include "cli/light_mix.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
 
@@ -92,7 +93,7 @@ struct InputPath {
 };
 
 std::vector<InputPath> inputsOf(const Request& request) {
-  const bool basis_file = request.basis != "surfaces";
+  const bool basis_file = request.basis != kBasisOfSurfaces;
   return {{"the input itself", request.input},
           {"the second input", request.second},
           {"the table of --thermal", request.thermal},

@@ -154,39 +154,40 @@ class SpaceSearch {
     return boxes;
   }
 
-  /// Whether a face that is not cut, and so may be on both sides of others, emits near the box.
-  bool meetsUncutLight(const Box3& box) const {
-    return std::ranges::any_of(input_.uncut, [&](const InputFace& face) {
-      if (scene_.materials[scene_.surfaces[face.surface].material].emission == Vec3(0.0)) {
-        return false;
-      }
-      Box3 own;
-      for (const Index v : face.loop) own.add(input_.points[v]);
-      return own.meets(box);
-    });
+  /// Boxes of the faces that are not cut, and so may be on both sides of others, and emit.
+  std::vector<Box3> uncutLights() const {
+    std::vector<Box3> boxes;
+    for (const InputFace& face : input_.uncut) {
+      if (scene_.materials[scene_.surfaces[face.surface].material].emission == Vec3(0.0)) continue;
+      Box3& box = boxes.emplace_back();
+      for (const Index v : face.loop) box.add(input_.points[v]);
+    }
+    return boxes;
   }
 
-  /// By root: the spaces that could be hollows, without those whose box contains that of a light.
+  /// By root: the spaces that could be hollows, without those whose box contains that of a light or
+  /// meets that of one that is not cut.
   std::vector<std::uint8_t> hollows() {
     std::vector<std::uint8_t> out(spaces_.size(), 0);
     std::vector<Box3> boxes = lights();
+    const std::size_t cut = boxes.size();
+    const std::vector<Box3> uncut = uncutLights();
+    boxes.insert(boxes.end(), uncut.begin(), uncut.end());
     const std::size_t count = boxes.size();
     std::vector<Index> candidates;
     std::vector<Index> root_of;
     for (Index k = 0; k < spaces_.size(); ++k) {
       if (!couldBeHollow(k)) continue;
-      const Box3 box = spaces_[k].box.grown(input_.coincidence);
-      if (meetsUncutLight(box)) continue;
       out[k] = 1;
       candidates.push_back(Index(boxes.size()));
       root_of.push_back(k);
-      boxes.push_back(box);
+      boxes.push_back(spaces_[k].box.grown(input_.coincidence));
     }
     for (const auto& [light, box] : overlappingPairs(boxes, candidates)) {
       if (light >= count || box < count) continue;
-      const bool inside =
-          boxes[box].contains(boxes[light].low) && boxes[box].contains(boxes[light].high);
-      if (inside) out[root_of[box - count]] = 0;
+      const bool lit = light >= cut || (boxes[box].contains(boxes[light].low) &&
+                                        boxes[box].contains(boxes[light].high));
+      if (lit) out[root_of[box - count]] = 0;
     }
     return out;
   }
