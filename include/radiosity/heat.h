@@ -141,6 +141,7 @@ struct HeatConditions {
   std::vector<Index> of_surface;  ///< into conditions; S as PatchMesh::surface_names, or N rows
   ConditionText text{};           ///< the text that they were read from; or empty
   std::vector<Note> notes{};      ///< on its groups
+  bool from_materials = false;    ///< an emissivity is 1 - reflectance of a material
 };
 
 /// Reads the table at `csv_path` (empty: none), the settings and groups. Errors: as

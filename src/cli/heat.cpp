@@ -35,16 +35,18 @@ HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   return readHeatConditions(pipeline.scene(), text);
 }
 
-/// Notes options that affect light but not heat.
-void noteLightOptions(Session& session) {
+/// Notes options that affect light but not heat; reflectances may count as emissivities.
+void noteLightOptions(Session& session, bool materials_are_used) {
   const SceneOptions& scene = session.request.scene;
   std::vector<std::string> unused;
-  if (!scene.set.empty()) unused.emplace_back("--set");
-  if (!scene.materials_file.empty()) unused.emplace_back("--materials");
-  if (scene.sky) unused.emplace_back("--sky (heat has --sky-temperature)");
-  for (const std::string& name : session.request.reading_options) {
-    if (name != "--unit") unused.push_back(name);
+  if (!materials_are_used) {
+    if (!scene.set.empty()) unused.emplace_back("--set");
+    if (!scene.materials_file.empty()) unused.emplace_back("--materials");
+    for (const std::string& name : session.request.reading_options) {
+      if (name != "--unit") unused.push_back(name);
+    }
   }
+  if (scene.sky) unused.emplace_back("--sky (heat has --sky-temperature)");
   if (unused.empty()) return;
   const Note note{Severity::warning,
                   fmt::format("about light, not used by heat: {}", fmt::join(unused, ", "))};
@@ -63,7 +65,7 @@ int runHeat(Session& session) {
   options.heat_conditions = conditionsFor(session, pipeline);
   validate(options.heat_conditions, options.heat);
   session.report.notes(options.heat_conditions.notes);
-  noteLightOptions(session);
+  noteLightOptions(session, options.heat_conditions.from_materials);
   pipeline.factors();
   keepFactors(session, pipeline, files);
   const HeatSummary& summary = pipeline.heat().summary;

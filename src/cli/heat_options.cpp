@@ -17,8 +17,8 @@ void addHeatOptions(CLI::App& app, Request& r) {
       "ambient_K, isothermal (yes: one temperature)");
   add(app, "Heat", "--condition", r.conditions, "NAME.PROPERTY=VALUE",
       "Replace what the table says, or do without one: emissivity (one number; one a band, 0.8; "
-      "0.3; or against temperature, 300:0.1 800:0.25), temperature, flux, power, convection, "
-      "ambient, isothermal. May be repeated");
+      "0.3; against temperature, 300:0.1 800:0.25; or the word material: 1 - reflectance), "
+      "temperature, flux, power, convection, ambient, isothermal. May be repeated");
   add(app, "Heat", "--group", r.groups, "NAME=PATTERN",
       "Join surfaces under one name, for conditions and in tables; * and ? stand for any text and "
       "any character, a surface belongs to the first group that matches it. May be repeated");

@@ -34,6 +34,24 @@ std::vector<Index> SurfaceTargets::matching(const std::string& pattern) const {
   return found;
 }
 
+std::optional<double> SurfaceTargets::emissivityOfMaterial(Index target) const {
+  const Surface& surface = scene_.surfaces[target];
+  const Material& material = scene_.materials[surface.material];
+  const Vec3& reflectance = material.reflectance;
+  if (material.texture != kNone) {
+    throw InputError(
+        fmt::format("{}: material {} has a texture, and no single emissivity; give a number for {}",
+                    scene_.file, material.name, surface.name));
+  }
+  if (reflectance.r != reflectance.g || reflectance.r != reflectance.b) {
+    throw InputError(fmt::format(
+        "{}: material {} reflects the colour {:g}, {:g}, {:g}, and has no single emissivity; give "
+        "a number for {}",
+        scene_.file, material.name, reflectance.r, reflectance.g, reflectance.b, surface.name));
+  }
+  return 1 - reflectance.r;
+}
+
 std::vector<std::string> SurfaceTargets::knownNames() const {
   return radiosity::knownNames(scene_);
 }

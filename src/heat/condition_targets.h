@@ -30,6 +30,11 @@ class ConditionTargets {
   virtual std::vector<std::string> knownNames() const = 0;
   /// The emissivity if no condition gives one.
   virtual std::optional<double> emissivityOf(Index target) const = 0;
+  /// 1 - reflectance, if a condition asks for that. Errors: InputError naming the material, for a
+  /// colour or a texture.
+  virtual std::optional<double> emissivityOfMaterial(Index target) const = 0;
+  /// The end of a message on missing emissivities.
+  virtual std::string_view emissivityCure() const = 0;
 };
 
 /// Surfaces have three names: their own, their material's and their object's.
@@ -44,6 +49,10 @@ class SurfaceTargets : public ConditionTargets {
   std::vector<Index> matching(const std::string& pattern) const override;
   std::vector<std::string> knownNames() const override;
   std::optional<double> emissivityOf(Index /*target*/) const override { return std::nullopt; }
+  std::optional<double> emissivityOfMaterial(Index target) const override;
+  std::string_view emissivityCure() const override {
+    return "; the word material stands for 1 - reflectance";
+  }
 
  private:
   const Scene& scene_;
@@ -62,6 +71,10 @@ class RowTargets : public ConditionTargets {
   std::vector<Index> matching(const std::string& pattern) const override;
   std::vector<std::string> knownNames() const override;
   std::optional<double> emissivityOf(Index target) const override;
+  std::optional<double> emissivityOfMaterial(Index target) const override {
+    return emissivityOf(target);
+  }
+  std::string_view emissivityCure() const override { return ""; }
 
  private:
   std::span<const std::string> names_;

@@ -14,6 +14,9 @@ namespace radiosity {
 
 namespace {
 
+/// An emissivity that is 1 - reflectance of the surface's material.
+constexpr std::string_view kOfMaterial = "material";
+
 [[noreturn]] void fail(const std::string& origin, const std::string& what) {
   throw InputError(fmt::format("{}: {}", origin, what));
 }
@@ -74,12 +77,15 @@ Emissivity parseEmissivity(const std::string& origin, std::string_view text) {
   return emissivity;
 }
 
-std::vector<Emissivity> parseBands(const std::string& origin, std::string_view text) {
-  std::vector<Emissivity> bands;
-  for (const std::string_view band : splitAt(text, ';')) {
-    bands.push_back(parseEmissivity(origin, trimmed(band)));
+void setEmissivity(GivenCondition& given, std::string_view text) {
+  if (text == kOfMaterial) {
+    given.emissivity_of_material = true;
+    return;
   }
-  return bands;
+  std::vector<Emissivity>& bands = given.emissivity.emplace();
+  for (const std::string_view band : splitAt(text, ';')) {
+    bands.push_back(parseEmissivity(given.origin, trimmed(band)));
+  }
 }
 
 bool parseYes(const std::string& origin, std::string_view text) {
@@ -97,8 +103,7 @@ struct Property {
 constexpr const char* kNameColumn = "surface";
 
 constexpr std::array<Property, 7> kProperties = {{
-    {"emissivity", "emissivity",
-     [](GivenCondition& g, std::string_view t) { g.emissivity = parseBands(g.origin, t); }},
+    {"emissivity", "emissivity", setEmissivity},
     {"temperature", "temperature_K",
      [](GivenCondition& g, std::string_view t) {
        g.temperature = kelvin(g.origin, "temperature", t);

@@ -15,6 +15,7 @@ struct GivenCondition {
   std::string origin;  ///< "walls.csv:3", "--condition lamp.power=60"
   std::string name;
   std::optional<std::vector<Emissivity>> emissivity;
+  bool emissivity_of_material = false;  ///< the word `material` in its place
   std::optional<double> temperature;
   std::optional<double> flux;
   std::optional<double> power;
@@ -23,6 +24,7 @@ struct GivenCondition {
   std::optional<bool> isothermal;
 
   bool heated() const { return temperature || flux || power; }
+  bool givesEmissivity() const { return emissivity || emissivity_of_material; }
 };
 
 /// The name for every surface; it gives what no other line does.

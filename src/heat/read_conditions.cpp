@@ -34,7 +34,7 @@ class Lines {
     if (!text.table.empty()) lines_ = parseConditionTable(text.origin, text.table);
     table_ = lines_.size();
     for (const std::string& setting : text.settings) lines_.push_back(parseSetting(setting));
-    checkOthers();
+    findOthers();
     find();
     placeAll(0, table_);
     placeAll(table_, lines_.size());
@@ -45,14 +45,17 @@ class Lines {
     out.notes = groups_.notes;
     std::map<Same, Index> known;
     for (Index t = 0; t < of_target_.size(); ++t) {
-      const Same same{of_target_[t], targets_.emissivityOf(t)};
+      const bool material = takesMaterial(of_target_[t]);
+      out.from_materials |= material;
+      const Same same{of_target_[t],
+                      material ? targets_.emissivityOfMaterial(t) : targets_.emissivityOf(t)};
       const auto found = known.find(same);
       if (!same.named_by.empty() && found != known.end()) {
         out.of_surface.push_back(found->second);
         continue;
       }
       GivenCondition given = together(same);
-      if (!given.emissivity && same.emissivity) given.emissivity = {{{}, {*same.emissivity}}};
+      if (material || !given.emissivity) given.emissivity = constant(same.emissivity);
       if (!given.heated() && !given.convection) without_condition_.push_back(targets_.nameOf(t));
       if (!given.emissivity) without_emissivity_.push_back(targets_.nameOf(t));
       out.of_surface.push_back(Index(out.conditions.size()));
@@ -73,12 +76,27 @@ class Lines {
     auto operator<=>(const Same&) const = default;
   };
 
+  static std::optional<std::vector<Emissivity>> constant(const std::optional<double>& value) {
+    if (!value) return std::nullopt;
+    return std::vector<Emissivity>{{{}, {*value}}};
+  }
+
+  /// Whether the last of the lines that give an emissivity leaves it to the material.
+  bool takesMaterial(const std::vector<std::size_t>& named_by) const {
+    const auto gives = [&](std::size_t k) { return lines_[k].givesEmissivity(); };
+    const auto named = std::find_if(named_by.rbegin(), named_by.rend(), gives);
+    if (named != named_by.rend()) return lines_[*named].emissivity_of_material;
+    const auto other = std::find_if(others_.rbegin(), others_.rend(), gives);
+    return other != others_.rend() && lines_[*other].emissivity_of_material;
+  }
+
   /// A table may have one line for all others, which must not give properties of a single surface.
-  void checkOthers() const {
+  void findOthers() {
     bool there = false;
     for (std::size_t k = 0; k < lines_.size(); ++k) {
       const GivenCondition& line = lines_[k];
       if (line.name != kOthers) continue;
+      others_.push_back(k);
       if (line.power || line.isothermal) {
         fail(line, "power and isothermal are of surfaces together; give them by name, not for *");
       }
@@ -169,9 +187,7 @@ class Lines {
   /// Combines all lines that name a target; the line for all others fills the gaps.
   GivenCondition together(const Same& same) {
     GivenCondition out;
-    for (const GivenCondition& line : lines_) {
-      if (line.name == kOthers) add(line, out);
-    }
+    for (const std::size_t k : others_) add(lines_[k], out);
     for (const std::size_t k : same.named_by) add(lines_[k], out);
     for (const std::size_t k : same.named_by) {
       const GivenCondition& line = lines_[k];
@@ -222,9 +238,10 @@ class Lines {
           joinNames(without_condition_, kFewNames)));
     }
     if (!without_emissivity_.empty()) {
-      throw InputError(fmt::format(
-          "no emissivity for {}: give one, each by name or for all others by the name *",
-          joinNames(without_emissivity_, kFewNames)));
+      throw InputError(
+          fmt::format("no emissivity for {}: give one, each by name or for all others "
+                      "by the name *{}",
+                      joinNames(without_emissivity_, kFewNames), targets_.emissivityCure()));
     }
   }
 
@@ -232,6 +249,7 @@ class Lines {
   SurfaceGroups groups_;
   std::vector<GivenCondition> lines_;
   std::size_t table_ = 0;                            ///< number of lines of the table
+  std::vector<std::size_t> others_;                  ///< the lines for all others
   std::vector<std::vector<Index>> found_;            ///< by line
   std::vector<bool> by_pattern_;                     ///< by line
   std::vector<std::vector<std::size_t>> of_target_;  ///< lines, in order of rising precedence

@@ -48,6 +48,7 @@ struct GatheredHandle {
 struct HeatHandle {
   std::shared_ptr<const FactorsHandle> factors;
   HeatSolution solution;
+  std::vector<Note> notes;  ///< on the conditions
   Key key;
 };
 

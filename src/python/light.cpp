@@ -94,6 +94,7 @@ std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
   const HeatConditions conditions =
       readHeatConditions(*mesh.scene, readConditionText(table_path, settings, groups));
   validate(conditions, options);
+  handle->notes = conditions.notes;
   runLong(report, [&](Progress& progress) {
     handle->solution = solveHeat(of.factors, conditions, mesh.result.mesh, options, progress);
   });
@@ -300,7 +301,11 @@ void bindLight(py::module_& module) {
     const HeatSolution& heat = self.cast<const H&>().solution;
     return rows(heat.irradiance, heat.bands, self);
   });
-  type.def_property_readonly("summary", [](const H& h) { return dictOf(h.solution.summary); });
+  type.def_property_readonly("summary", [](const H& h) {
+    py::dict summary = dictOf(h.solution.summary);
+    summary["notes"] = listOf(h.notes);
+    return summary;
+  });
   type.def_property_readonly(
       "form_factors", [](const H& h) { return std::const_pointer_cast<FactorsHandle>(h.factors); });
 

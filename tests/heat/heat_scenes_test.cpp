@@ -270,6 +270,30 @@ TEST(HeatConditionsByName, GroupsAreNamedLikePatterns) {
             std::string::npos);
 }
 
+TEST(HeatConditionsByName, MaterialsGiveEmissivitiesWhereAsked) {
+  Scene scene = namedScene();
+  scene.materials[scene.surfaces[0].material].reflectance = Vec3(.3);
+  scene.materials[scene.surfaces[1].material].reflectance = Vec3(.3, .2, .1);
+  const auto emissivities = [&](const std::vector<std::string>& settings) {
+    const HeatConditions c = readHeatConditions(scene, "", settings);
+    std::vector<double> out;
+    for (const Index k : c.of_surface) out.push_back(c.conditions[k].emissivity[0].values[0]);
+    EXPECT_TRUE(c.from_materials);
+    return out;
+  };
+  using Values = std::vector<double>;  // of walls, floor and lid
+  EXPECT_EQ(emissivities(
+                {"*.flux=0", "*.emissivity=material", "floor.emissivity=.6", "lid.emissivity=.2"}),
+            (Values{.7, .6, .2}));
+  EXPECT_EQ(emissivities({"*.flux=0", "*.emissivity=.4", "walls.emissivity=.1",
+                          "walls.emissivity=material"}),
+            (Values{.7, .4, .4}));
+  EXPECT_NE(test::errorOf([&] {
+              emissivities({"*.flux=0", "*.emissivity=material"});
+            }).find("material floor reflects the colour 0.3, 0.2, 0.1"),
+            std::string::npos);
+}
+
 TEST(HeatConditionsByName, RowsAreFoundByNameOrNumber) {
   const std::vector<std::string> names = {"wall", "", "wall", "lid"};
   const std::vector<double> emissivity = {.1, .2, .3, .4};

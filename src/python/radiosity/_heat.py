@@ -55,7 +55,7 @@ class Heat(Fixed):
         """What the solver did, a dict: status, usable, message, iterations (of Newton's method),
         linear_steps, residual and balance_residual (relative), undetermined (patches without a
         temperature), balance (a dict, W: radiated, to_sky, on_backs, imbalance, convected, throughput),
-        seconds. Not converging is no error but a warning: `usable` is False then."""
+        seconds, notes (dicts of severity and text, on groups that overlap). Not converging is no error but a warning: `usable` is False then."""
         return self._handle.summary
 
     @property
@@ -77,7 +77,9 @@ def _number(name: str, value: Any) -> str:
 
 
 def _emissivity(name: str, value: Any) -> str:
-    """One number, one a band, or a table {K: emissivity}, as text."""
+    """One number, one a band, a table {K: emissivity} or the word "material", as text."""
+    if isinstance(value, str) and value == "material":
+        return value
     bands = value if isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) else [value]
     of_bands = []
     for band in bands:
@@ -142,7 +144,8 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
     """Exchanges heat by radiation, with what each surface is given.
 
     Each condition is a dict by the name of a surface, material or object, or one value for all that
-    no other names: emissivity (0 to 1; a list: one a band; a dict {K: emissivity}: a table),
+    no other names: emissivity (0 to 1; a list: one a band; a dict {K: emissivity}: a table; "material":
+    1 - reflectance),
     temperature (K; None: to be found, adiabatic unless flux, power or convection says more), flux
     (W/m^2 supplied), power (W supplied), convection (W/m^2/K) to air of `ambient` (K), isothermal
     (bool). The name "*" is all surfaces that no other names. table: a CSV file of the same.
