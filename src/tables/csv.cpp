@@ -47,22 +47,24 @@ void writeWideCsv(CheckedFile& file, const NamedFactors& factors, Progress& prog
 
 void writeTallCsv(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   const bool has_error = !factors.error.empty();
-  file.write(fmt::format("from,to,form_factor{},reciprocity_m2\n", has_error ? ",error" : ""));
+  file.write(
+      fmt::format("from,to,area_m2,form_factor{},reciprocity_m2\n", has_error ? ",error" : ""));
   forDenseRows(
       factors, "writing the table", progress, [&](std::size_t a, const std::vector<double>& row) {
         fmt::memory_buffer lines;
         const auto out = std::back_inserter(lines);
         const std::string from = csvField(labelOf(factors, a));
+        const double area = factors.matrix->area()[a];
         for (std::size_t b = 0; b < row.size(); ++b) {
           if (factors.numbered && row[b] == 0) continue;
-          fmt::format_to(out, "{},{},{}", from, csvField(labelOf(factors, b)), row[b]);
+          fmt::format_to(out, "{},{},{},{}", from, csvField(labelOf(factors, b)), area, row[b]);
           if (has_error) fmt::format_to(out, ",{}", factors.entryError(a, b));
           fmt::format_to(out, ",{}\n", factors.reciprocityResidual(a, b));
         }
         // Sky and backs exchange nothing: they have no residual and no error figure.
         const char* rest = has_error ? ",," : ",";
-        fmt::format_to(out, "{},{},{}{}\n{},backs,{}{}\n", from, csvField(factors.sky_name),
-                       factors.sky[a], rest, from, factors.backs[a], rest);
+        fmt::format_to(out, "{0},{1},{2},{3}{5}\n{0},backs,{2},{4}{5}\n", from,
+                       csvField(factors.sky_name), area, factors.sky[a], factors.backs[a], rest);
         file.write(lines.data(), lines.size());
       });
 }

@@ -90,13 +90,14 @@ std::string wide(const NamedFactors& factors, int digits, std::size_t most) {
 }
 
 std::string tall(const NamedFactors& factors, int digits, std::size_t most) {
-  Cells header = {"from", "to", "F"};
+  Cells header = {"from", "to", "area m^2", "F"};
   if (!factors.error.empty()) header.push_back("error");
   Table table(std::move(header), most);
   Progress quiet;
   forDenseRows(factors, "", quiet, [&](std::size_t a, const std::vector<double>& row) {
     const auto add = [&](const std::string& to, double value, const std::string& error) {
-      Cells cells = {cellOf(labelOf(factors, a)), cellOf(to), numberOf(value, digits)};
+      Cells cells = {cellOf(labelOf(factors, a)), cellOf(to),
+                     numberOf(factors.matrix->area()[a], digits), numberOf(value, digits)};
       if (!factors.error.empty()) cells.push_back(error);
       table.add(std::move(cells));
     };

@@ -103,18 +103,20 @@ class Tables(CliTest):
                          "--sky-name", "open front")
         truth = Truth(self.folder / "t.h5")
         header, rows = read_csv(self.folder / "t.csv")
-        self.assertEqual(header, ["from", "to", "form_factor", "error", "reciprocity_m2"])
+        self.assertEqual(header, ["from", "to", "area_m2", "form_factor", "error", "reciprocity_m2"])
         found = {(row[0], row[1]): row[2:] for row in rows}
         self.assertEqual(len(found), len(truth.names) * (len(truth.names) + 2))
         for a, name in enumerate(truth.names):
             for b, other in enumerate(truth.names):
-                self.assert_close(float(found[name, other][0]), truth.factors[a, b])
-                self.assertGreaterEqual(float(found[name, other][1]), 0)
-            self.assert_close(float(found[name, "open front"][0]), truth.sky[a])
-            self.assert_close(float(found[name, "backs"][0]), truth.backs[a])
+                self.assert_close(float(found[name, other][0]), truth.area[a])
+                self.assert_close(float(found[name, other][1]), truth.factors[a, b])
+                self.assertGreaterEqual(float(found[name, other][2]), 0)
+            self.assert_close(float(found[name, "open front"][1]), truth.sky[a])
+            self.assert_close([float(cell) for cell in found[name, "backs"][:2]],
+                              [truth.area[a], truth.backs[a]])
         pairs = json.loads((self.folder / "t.json").read_text())["pairs"]
         self.assertEqual({(p["from"], p["to"]): p["form_factor"] for p in pairs},
-                         {pair: float(cells[0]) for pair, cells in found.items()})
+                         {pair: float(cells[1]) for pair, cells in found.items()})
 
     def test_groups_reuse_form_factors_and_are_printed(self):
         self.run_program(*ROOM, "-o", "t.h5")
@@ -207,8 +209,8 @@ class Tables(CliTest):
                           abs(exchange - exchange.T).max(axis=1))
         self.run_program("factors", "t.h5", "--layout", "long", "-o", "t.csv", "-o", "t.json")
         header, rows = read_csv(self.folder / "t.csv")
-        self.assertEqual(header, ["from", "to", "form_factor", "reciprocity_m2"])
-        self.assertTrue(all(len(row) == 4 for row in rows))
+        self.assertEqual(header, ["from", "to", "area_m2", "form_factor", "reciprocity_m2"])
+        self.assertTrue(all(len(row) == 5 for row in rows))
 
     def test_names_with_commas_are_quoted(self):
         self.run_program("factors", "box.obj", "--patches", 30, "--group", 'a, "b"=room*', "-o",
