@@ -47,8 +47,8 @@ struct Material {
 struct Surface {
   std::string object;  ///< object, group or node name
   Index material = kNone;
-  /// "object/material", or the one name that both have. It is unique in the scene and the key of
-  /// results.
+  /// "object/material", or one name if both have the same or the object has no material. It is
+  /// unique in the scene and the key of results.
   std::string name;
 };
 

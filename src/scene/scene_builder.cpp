@@ -73,12 +73,22 @@ void SceneBuilder::addFace(std::span<const Index> corners, std::span<const Vec2>
 
 void SceneBuilder::finish() {
   dropUnusableTextures();
+  nameSurfaces();
+}
+
+void SceneBuilder::nameSurfaces() {
   UniqueNames names;
+  std::set<std::string> of_materials;
+  for (const Material& material : scene_.materials) of_materials.insert(material.name);
+  std::map<std::string, int> surfaces_of;
+  for (const Surface& surface : scene_.surfaces) ++surfaces_of[surface.object];
   for (Surface& surface : scene_.surfaces) {
     const std::string& material = scene_.materials[surface.material].name;
     // Exporters often give an object and its material the same name.
-    const bool one_name = surface.object == material;
-    surface.name = names.make(one_name ? material : surface.object + "/" + material);
+    const bool one_name = surface.object == material ||
+                          (material == kNoMaterial && surfaces_of[surface.object] == 1 &&
+                           !of_materials.contains(surface.object));
+    surface.name = names.make(one_name ? surface.object : surface.object + "/" + material);
   }
 }
 

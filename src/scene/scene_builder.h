@@ -63,6 +63,7 @@ class SceneBuilder {
 
  private:
   void dropUnusableTextures();
+  void nameSurfaces();
 
   Scene& scene_;
   const SceneOptions& options_;
@@ -73,6 +74,9 @@ class SceneBuilder {
 inline bool isTextured(const Material& material) {
   return material.texture != kNone || material.emission_texture != kNone;
 }
+
+/// The name of the material of faces without one.
+inline constexpr const char* kNoMaterial = "default";
 
 /// A material `name` with the default reflectance.
 Material defaultMaterial(const std::string& name, const SceneOptions& options);

@@ -79,6 +79,14 @@ class Gmsh(CliTest):
         self.assertIn("in several physical groups, they count to the first: faces also in: physical 2",
                       self.run_program("info", "a.msh").err)
 
+    def test_groups_whose_faces_are_not_told_are_named(self):
+        # As programs write 4.1 that keep names and know of no entities.
+        text = mesh_files.to_gmsh4(MESH).decode()
+        start, end = text.index("$Entities"), text.index("$EndEntities") + len("$EndEntities\n")
+        self.put(text[:start] + text[end:])
+        self.assertIn("no face is said to be in these physical groups (4.1 says so in $Entities; if there should be "
+                      "some, save as 2.2): plate", self.run_program("info", "a.msh").err)
+
     def test_a_negative_group_turns_its_surface_over(self):
         below = mesh_files.Mesh(SQUARE + [(x, y, -1) for x, y, _ in SQUARE],
                                 {"plate": [[0, 1, 2, 3]], "below": [[4, 5, 6, 7]]})

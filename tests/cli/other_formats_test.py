@@ -348,7 +348,7 @@ class OtherFormats(CliTest):
 
     def test_fbx(self):
         surface, material = self.only_surface("a.fbx", FBX, "--default-reflectance", ".3")
-        self.assertEqual([surface["name"], surface["area_m2"]], ["wall/default", 1])
+        self.assertEqual([surface["name"], surface["area_m2"]], ["wall", 1])
         self.assertEqual(material["reflectance"], "0.3, 0.3, 0.3")
 
     def test_off(self):

@@ -31,7 +31,7 @@ TEST_F(SceneGltf, ReadsATriangleWithoutMaterial) {
   ASSERT_EQ(scene.faceCount(), 1u);
   EXPECT_EQ(corner(scene, 0, 1), Vec3(1, 0, 0));
   EXPECT_EQ(normalOf(scene, 0), Vec3(0, 0, 1));
-  EXPECT_EQ(scene.surfaces[0].name, "tri/default");
+  EXPECT_EQ(scene.surfaces[0].name, "tri");
   EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(.5)) << "not glTF's base colour of 1";
   EXPECT_FALSE(scene.materialOf(0).two_sided);
   EXPECT_NOTE(scene.notes, "no material, reflectance 0.5: tri", Severity::warning);

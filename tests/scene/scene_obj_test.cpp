@@ -301,7 +301,7 @@ TEST_F(SceneObj, GoesOnWithoutMaterials) {
   EXPECT_NOTE(scene.notes, "scene.obj:1: material file", Severity::warning);
   EXPECT_NOTE(scene.notes, "the missing file would define: lamp, wall", Severity::warning);
   EXPECT_NOTE(scene.notes, "no material, reflectance 0.5: a", Severity::warning);
-  EXPECT_EQ(scene.surfaces[0].name, "a/default");
+  EXPECT_EQ(scene.surfaces[0].name, "a");
   EXPECT_EQ(scene.surfaces[1].name, "b/lamp");
   EXPECT_EQ(scene.materialOf(1).reflectance, Vec3(.5));
   EXPECT_EQ(scene.materialOf(1).emission, Vec3(0));

@@ -71,7 +71,7 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
   std::string name;
   if (library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS) name = text.C_Str();
   // Assimp adds a grey material for meshes without one.
-  if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial("default", options_);
+  if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial(kNoMaterial, options_);
   if (name.empty()) name = fmt::format("material {}", number);
   Material material = defaultMaterial(name, options_);
   const std::optional<Vec3> diffuse = colour(given, "$clr.diffuse");

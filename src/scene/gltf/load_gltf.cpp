@@ -189,7 +189,7 @@ Index Reader::materialOf(const tinygltf::Primitive& primitive, const std::string
     for (const Material& material : scene_.materials) names.make(material.name);
     materials_.none = Index(scene_.materials.size());
     materials_.texcoords.emplace_back();
-    scene_.materials.push_back(defaultMaterial(names.make("default"), options_));
+    scene_.materials.push_back(defaultMaterial(names.make(kNoMaterial), options_));
   }
   return materials_.none;
 }

@@ -51,6 +51,7 @@ class GmshReader {
   Scene read() {
     format();
     while (!cursor_.atEnd()) section();
+    noteEmptyGroups();
     notes_.appendTo(faces_.scene().notes);
     return faces_.finish(
         "save the mesh of the surfaces too (in Gmsh: physical surfaces, or "
@@ -71,12 +72,13 @@ class GmshReader {
   void elements4();
   void readNodes(const ElementShape& shape, NumberType type);
   ElementShape shape(long long type) const;
-  std::string physicalName(int dimension, long long tag) const;
+  std::string physicalName(int dimension, long long tag);
   struct Side {
     std::string group;
     bool turned;
   };
-  std::string volumeGroup(long long entity) const;
+  std::string volumeGroup(long long entity);
+  void noteEmptyGroups();
   std::vector<Side> sidesOf(long long entity);
   void addSides(const ElementShape& shape, std::span<const Side> sides, long long tag);
   bool isNewFace(const ElementShape& shape, long long entity);
@@ -89,6 +91,7 @@ class GmshReader {
   std::vector<Index> corners_;                               ///< of the present element
   using Tag = std::pair<int, long long>;                     ///< with the dimension: 2 or 3
   std::map<Tag, std::string> physical_;                      ///< names of groups
+  std::set<Tag> used_;                                       ///< groups that have elements
   std::map<Tag, std::vector<long long>> tags_;               ///< groups of an entity (4.1)
   std::set<std::pair<long long, std::vector<Index>>> seen_;  ///< faces of an entity (2.2)
 };
@@ -246,7 +249,8 @@ void GmshReader::readNodes(const ElementShape& shape, NumberType type) {
   }
 }
 
-std::string GmshReader::physicalName(int dimension, long long tag) const {
+std::string GmshReader::physicalName(int dimension, long long tag) {
+  used_.emplace(dimension, tag);
   const auto found = physical_.find({dimension, tag});
   return found == physical_.end() ? fmt::format("physical {}", tag) : found->second;
 }
@@ -288,7 +292,7 @@ void GmshReader::elements2() {
   }
 }
 
-std::string GmshReader::volumeGroup(long long entity) const {
+std::string GmshReader::volumeGroup(long long entity) {
   const auto found = tags_.find({3, entity});
   if (found == tags_.end() || found->second.empty()) return fmt::format("entity {}", entity);
   return physicalName(3, std::abs(found->second.front()));
@@ -333,6 +337,17 @@ void GmshReader::elements4() {
       readNodes(kind, u64);
       addSides(kind, sides, tag);
     }
+  }
+}
+
+/// Programs without $Entities write the names of groups in 4.1 and not which faces are theirs.
+void GmshReader::noteEmptyGroups() {
+  for (const auto& [tag, name] : physical_) {
+    if (tag.first != 2 || used_.contains(tag)) continue;
+    notes_.add(version_ == 4 ? "no face is said to be in these physical groups (4.1 says so in "
+                               "$Entities; if there should be some, save as 2.2)"
+                             : "no face is said to be in these physical groups",
+               name, Severity::warning);
   }
 }
 

@@ -66,7 +66,7 @@ Index addNoMaterial(const ObjScan& scan, const SceneOptions& options, Scene& sce
   }
   if (names.empty()) return kNone;
   scene.notes.push_back(noMaterialNote(names, !scan.colours.empty(), options));
-  std::string name = "default";
+  std::string name = kNoMaterial;
   while (std::any_of(scene.materials.begin(), scene.materials.end(),
                      [&](const Material& m) { return m.name == name; })) {
     name += "#none";
