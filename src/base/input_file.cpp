@@ -7,9 +7,12 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "radiosity/base.h"
 
@@ -17,12 +20,51 @@ namespace radiosity {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The files that were found, by device and number. Files beside a scene are opened by readers and
+/// by libraries' callbacks, so that no caller has a list of them.
+class FoundFiles {
+ public:
+  void add(const std::string& path) {
+    const Id id = idOf(path);
+    const std::lock_guard lock(mutex_);
+    ids_.insert(id);
+  }
+  bool contains(const std::string& path) {
+    const Id id = idOf(path);
+    const std::lock_guard lock(mutex_);
+    return id != Id() && ids_.contains(id);
+  }
+
+ private:
+  using Id = std::pair<dev_t, ino_t>;
+  static Id idOf(const std::string& path) {
+    struct stat s {};
+    return stat(path.c_str(), &s) == 0 ? Id(s.st_dev, s.st_ino) : Id();
+  }
+  std::mutex mutex_;
+  std::set<Id> ids_;
+};
+
+FoundFiles& foundFiles() {
+  static FoundFiles files;
+  return files;
+}
+
+}  // namespace
+
+bool wasFound(const std::string& path) { return foundFiles().contains(path); }
+
 std::string whyNotAFile(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   switch (status.type()) {
     case fs::file_type::regular:
-      if (access(path.c_str(), R_OK) == 0) return {};
+      if (access(path.c_str(), R_OK) == 0) {
+        foundFiles().add(path);
+        return {};
+      }
       return fmt::format("cannot be opened ({}); check the permissions",
                          std::generic_category().message(errno));
     case fs::file_type::not_found:

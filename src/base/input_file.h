@@ -12,6 +12,10 @@ std::string whyNotAFile(const std::string& path);
 /// Throws InputError "PATH: why; cure" unless `path` is a regular file.
 void requireFile(const std::string& path);
 
+/// Whether this process found the file by one of these functions, under any name: it is an input,
+/// which no output should replace.
+bool wasFound(const std::string& path);
+
 /// The whole file as bytes. Errors: InputError if it is not a regular file, unreadable or empty;
 /// RunError if it does not fit into memory.
 std::string readWholeFile(const std::string& path);

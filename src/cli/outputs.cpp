@@ -8,6 +8,7 @@
 
 #include "base/figure_text.h"
 #include "base/file_name.h"
+#include "base/input_file.h"
 #include "cli/light_mix.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
@@ -141,6 +142,17 @@ std::vector<Output> parseOutputs(const Request& request) {
   }
   if (!request.report.empty()) requireNoInput(request.report, request, false);
   return outputs;
+}
+
+void requireNoFileOfScene(const Request& request) {
+  std::vector<std::string> paths = request.outputs;
+  paths.insert(paths.end(), {request.lightmap, request.patch_table, request.report});
+  for (const std::string& path : paths) {
+    if (path.empty() || sameFile(path, request.input) || !wasFound(path)) continue;
+    throw InputError(
+        fmt::format("{}: is a file of the scene {}, which it would replace; write to another name",
+                    path, request.input));
+  }
 }
 
 OutputSet::OutputSet(std::vector<Output> outputs) {

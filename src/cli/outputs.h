@@ -45,6 +45,10 @@ struct Output {
 /// file twice, the scene file itself, or an HDF5 file of another program in place of results.
 std::vector<Output> parseOutputs(const Request& request);
 
+/// Checks, once the scene is read, that no output would replace a file that belongs to it, such as
+/// a texture. Errors: InputError naming the output.
+void requireNoFileOfScene(const Request& request);
+
 /// Writes files under temporary names; commit() renames all. Without commit() all are removed.
 class OutputSet {
  public:

@@ -9,6 +9,7 @@
 
 #include "base/figure_text.h"
 #include "base/made.h"
+#include "cli/outputs.h"
 #include "cli/signal_guard.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
@@ -100,6 +101,7 @@ bool isAboutLight(const Note& note) {
 }  // namespace
 
 void PipelineReport::opened(const Pipeline& pipeline) {
+  requireNoFileOfScene(request_);
   summarizeScene(report_, pipeline.scene(), request_.input);
 }
 

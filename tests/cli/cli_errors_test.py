@@ -178,6 +178,17 @@ class BadInput(CliTest):
         run = self.run_program("factors", "x.h5", "-o", "y.h5")
         self.assertIn("WARNING: y.h5: holds results of other.obj", run.err)
 
+    def test_files_of_the_scene_are_not_replaced(self):
+        shutil.copy(DATA / "cornell-box.png", self.folder / "wall.png")
+        self.write("box.mtl", "newmtl lamp\nKe 1 1 1\nnewmtl wall\nmap_Kd wall.png\n")
+        before = {name: (self.folder / name).read_bytes() for name in ("wall.png", "box.mtl")}
+        os.symlink("wall.png", self.folder / "link.png")
+        for name in ("wall.png", "link.png"):
+            self.refuse("render", "box.obj", *SMALL, "-o", name,
+                        words=[name, "is a file of the scene box.obj", "another name"])
+        self.refuse("solve", "box.obj", *SMALL, "--report", "box.mtl", words=["box.mtl", "is a file of the scene"])
+        self.assertEqual(before, {name: (self.folder / name).read_bytes() for name in before})
+
     def test_reading_options_need_a_scene_file(self):
         self.run_program("mesh", "box.obj", *SMALL[:2], "-o", "m.h5")
         self.refuse("solve", "m.h5", "--unit", "mm", words=["--unit", "scene file"])
