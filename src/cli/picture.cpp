@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "base/parse.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
 #include "radiosity/version.h"
@@ -40,12 +40,9 @@ int otherSide(double pixels) { return std::max(1, int(std::lround(pixels))); }
 
 std::optional<double> exposureNumber(const Request& request) {
   if (request.exposure == "auto") return std::nullopt;
-  std::string_view text = request.exposure;
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double ev = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ev);
+  const std::optional<double> ev = parseNumber(request.exposure);
   constexpr double kLargest = 100;  // 2^100 is beyond any lamp
-  if (error != std::errc() || end != text.data() + text.size() || !(std::abs(ev) <= kLargest)) {
+  if (!ev || std::abs(*ev) > kLargest) {
     throw InputError(
         fmt::format("--exposure: '{}' is neither auto nor a number of stops from -100 "
                     "to 100, e.g. --exposure 2.5",

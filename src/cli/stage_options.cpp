@@ -2,12 +2,26 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <optional>
 
+#include "base/parse.h"
 #include "cli/options.h"
 #include "cli/validators.h"
 #include "radiosity/names.h"
 
 namespace radiosity::cli {
+
+namespace {
+
+double parseReflectance(const std::string& text) {
+  const std::optional<double> value = parseNumber(text);
+  if (!value) {
+    throw InputError(fmt::format("--default-reflectance: '{}' is not a number", text));
+  }
+  return *value;
+}
+
+}  // namespace
 
 void addSceneOptions(CLI::App& app, Request& r) {
   const SceneOptions defaults;
@@ -35,10 +49,9 @@ void addSceneOptions(CLI::App& app, Request& r) {
       ->check(CLI::IsMember({"linear", "srgb"}));
   reading(
       "--default-reflectance",
-      [&r](const std::string& t) { r.scene.default_reflectance = std::stod(t); }, "RHO",
+      [&r](const std::string& t) { r.scene.default_reflectance = parseReflectance(t); }, "RHO",
       fmt::format("Reflectance of faces without a material, 0 to 1 (default {})",
-                  defaults.default_reflectance))
-      ->check(CLI::Number);
+                  defaults.default_reflectance));
   reading(
       "--vertex-colours",
       [&r](const std::string& t) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <optional>
 
 #include "base/parse.h"
@@ -26,10 +25,7 @@ const CLI::Validator& wholeNumber() {
 const CLI::Validator& nonNegative() {
   static const CLI::Validator kValidator(
       [](std::string& text) {
-        double value = 0;
-        const char* last = text.data() + text.size();
-        const auto [end, error] = std::from_chars(text.data(), last, value);
-        return error == std::errc() && end == last && value >= 0
+        return parseNumber(text).value_or(-1) >= 0
                    ? std::string()
                    : fmt::format("'{}' is not a number from 0 on", text);
       },

@@ -51,9 +51,14 @@ class BadArguments(CliTest):
                 (["solve", "box.obj", "--max-iterations", "0"], ["iterations"]),
                 (["render", "box.obj", "-o", "p.png", "--width", "0"], ["width"]),
                 (["render", "box.obj", "-o", "p.png", "--exposure", "bright"], ["--exposure"]),
+                (["render", "box.obj", "-o", "p.png", "--exposure", "+-1"], ["--exposure", "+-1"]),
                 (["render", "box.obj", "-o", "p.png", "--show", "form-factor:x"], ["patch number"]),
                 (["info", "box.obj", "--unit", "ell"], ["--unit", "mm"]),
                 (["info", "box.obj", "--default-reflectance", "2"], ["default-reflectance"]),
+                (["info", "box.obj", "--default-reflectance", "1e999"],
+                 ["--default-reflectance: '1e999' is not a number"]),
+                (["info", "box.obj", "--default-reflectance", "nan"],
+                 ["--default-reflectance: 'nan' is not a number"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, words=words)
