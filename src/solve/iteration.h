@@ -13,7 +13,7 @@
 namespace radiosity {
 
 /// B = E + rho F B for some bands at once. Every band carries light: max |E| > 0 in each. E may be
-/// negative: rays may correct the irradiance of a cluster downwards; a heat flux may be taken out.
+/// negative: rays may correct the irradiance of a cluster downwards.
 struct System {
   System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e);
 

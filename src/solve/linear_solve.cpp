@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "solve/band_plan.h"
 #include "solve/certificate.h"
 
 namespace radiosity {
@@ -158,28 +157,6 @@ void requireSolver(Solver solver, const ExchangeMatrix& matrix) {
         "solver direct: {} unknowns are too many for a dense matrix, {} are the most; use auto",
         matrix.size(), kMostDirectUnknowns));
   }
-}
-
-LinearSolution solveLinear(const ExchangeMatrix& matrix, std::span<const double> reflectance,
-                           std::span<const double> source, int bands, const SolveOptions& options,
-                           Progress& progress) {
-  options.validate();
-  requireSolver(options.solver, matrix);
-  const BandPlan plan(reflectance, source, bands);
-  LinearSolution solution;
-  if (plan.solved().empty()) {
-    solution.radiosity.assign(source.size(), 0.0);
-    solution.irradiance.assign(source.size(), 0.0);
-    solution.summary.status = SolveStatus::no_light;
-    solution.summary.error_bound = 0.0;
-    solution.summary.message = "nothing to solve: no source";
-    return solution;
-  }
-  const System system(matrix, int(plan.solved().size()), plan.pick(reflectance), plan.pick(source));
-  const Fields fields = solveSystem(system, options, progress, solution.summary);
-  solution.radiosity = plan.spread(fields.radiosity);
-  solution.irradiance = plan.spread(fields.irradiance);
-  return solution;
 }
 
 }  // namespace radiosity

@@ -1,8 +1,5 @@
-// Solves B = E + rho F B for callers that have reflectances and a right-hand side, but no scene.
+// Runs a solver on a system, then bounds the error.
 #pragma once
-
-#include <span>
-#include <vector>
 
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/solve.h"
@@ -17,21 +14,5 @@ void requireSolver(Solver solver, const ExchangeMatrix& matrix);
 /// time.
 Fields solveSystem(const System& system, const SolveOptions& options, Progress& progress,
                    SolveSummary& summary);
-
-/// B and H = F B, N * bands, row-major, and their summary, without energy, skips and time.
-struct LinearSolution {
-  std::vector<double> radiosity;
-  std::vector<double> irradiance;
-  SolveSummary summary;
-};
-
-/// Solves (I - rho F) B = `source` in every band, by options.solver. `reflectance`: N * bands,
-/// row-major, 0 to 1; 1 is fine in a room that loses light elsewhere. `source`: likewise, finite,
-/// of any sign. A band without a source has B = 0. If a room neither absorbs its light nor lets it
-/// out, there is no solution: status no_convergence. Errors: InputError if options.solver cannot
-/// solve with this matrix; Cancelled.
-LinearSolution solveLinear(const ExchangeMatrix& matrix, std::span<const double> reflectance,
-                           std::span<const double> source, int bands, const SolveOptions& options,
-                           Progress& progress);
 
 }  // namespace radiosity

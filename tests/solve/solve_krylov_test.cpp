@@ -6,7 +6,7 @@
 
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
-#include "solve/linear_solve.h"
+#include "solve/iteration.h"
 #include "solve/matrix_rooms.h"
 #include "solve_systems.h"
 #include "support/scene_builder.h"
@@ -221,28 +221,6 @@ TEST(ConjugateGradients, TakeAnySourceOfLight) {
     // The residual over the room's least loss: some of these rows sum to nearly 1.
     EXPECT_LT(test::largestDifference(fields.radiosity, expected), 1e-10);
   }
-}
-
-// Heat's case: some surfaces take no net heat (rho = 1), sources and sinks of any sign, and a band
-// with nothing.
-TEST(LinearSolve, TakesSpansOfReflectanceAndSource) {
-  const std::size_t n = 60;
-  test::Random random(21);
-  const auto [f, area] = test::reciprocal(n, random);
-  const FormFactors factors = test::symmetricFactorsFrom(f, area);
-  auto rho = random.vector(n * 3, 0.1, 0.9);
-  auto source = random.vector(n * 3, -1.0, 1.0);
-  for (std::size_t i = 0; i < n; ++i) {
-    source[i * 3 + 1] = 0;
-    if (i % 2 == 0) rho[i * 3] = 1;
-  }
-  const auto expected = test::direct(f, rho, source, 3);
-  Progress quiet;
-  const LinearSolution s =
-      solveLinear(factors.matrix, rho, source, 3, test::options(Solver::automatic, 1e-12), quiet);
-  EXPECT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
-  // 1e-12 over the loss of a bounce, at least a tenth.
-  EXPECT_LT(test::largestDifference(s.radiosity, expected), 1e-10);
 }
 
 TEST(MatrixRooms, ArePatchesJoinedByLight) {

@@ -60,7 +60,6 @@ class EdgeCuts {
   /// the others are points inside edges.
   Vec3 point(Index id) const;
   std::size_t pointCount() const { return complex_.vertices.size() + edge_points_.size(); }
-  std::span<const Vec3> edgePoints() const { return edge_points_; }
 
   /// Appends the ids of the points of a directed edge, its first end included, its last end not.
   void append(DirectedEdge edge, std::vector<Index>& ids) const;
