@@ -41,7 +41,7 @@ struct SolveOptions {
 
 enum class SolveStatus {
   /// |r|_inf <= tolerance |E|_inf in every band, r = E + rho F B - B; usable. Solvers that are
-  /// accurate in a norm alone (cg, gmres, direct) also hold
+  /// accurate in a norm alone (cg, gmres, direct, petsc) also hold
   /// |r_i| <= 100 tolerance (E_i + rho_i H_i) for every patch, unless some E is negative: so rooms
   /// that little light reaches are right, too.
   converged,
@@ -85,8 +85,8 @@ struct SolveSummary {
   double seconds = 0;
   /// Relative, one an iteration; the last entry is always the true residual. Before that, Jacobi
   /// and direct: the true residual. Gauss-Seidel: the largest change of the sweep, or the true
-  /// residual if the change is within tolerance. cg, gmres: the residual of their recurrence, or
-  /// the true one at a restart.
+  /// residual if the change is within tolerance. cg, gmres, petsc: the residual of their
+  /// recurrence, or the true one at a restart.
   std::vector<double> residual_history;
   std::string message;  ///< plain words, with numbers; says if B is usable
   bool usable() const {

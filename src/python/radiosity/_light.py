@@ -140,8 +140,7 @@ def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky:
     default: the scene's, with its sky. reflectance: 0 to 1, one number, (N,) or (N, bands); default:
     the scene's, of 3 bands. sky: radiance, W/m^2/sr, one number or (bands,); default: dark where
     emission is given. solver: auto, jacobi, gauss-seidel, cg, gmres or direct (petsc runs under mpirun
-    alone). tolerance: of the true
-    residual, relative to the largest emission of a band.
+    alone). tolerance: of the true residual, relative to the largest emission of a band.
 
     Arrays are copied once, as float64; those of the result are views of new ones. A UserWarning says
     where the iterations did not converge.
