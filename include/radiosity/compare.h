@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/names.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/results.h"
 
@@ -19,6 +20,9 @@ enum class LightUnit {
   radiance,   ///< L, W/m^2/sr
   srgb8       ///< coded for a screen: of unknown exposure, clipped at the top
 };
+inline constexpr NameTable<LightUnit, 3> kLightUnitNames{{{LightUnit::radiosity, "radiosity"},
+                                                          {LightUnit::radiance, "radiance"},
+                                                          {LightUnit::srgb8, "srgb8"}}};
 
 /// Light on surfaces: triangles with a value at each corner, in cells (patches, faces) over which
 /// values are averaged before they are compared.

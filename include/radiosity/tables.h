@@ -9,6 +9,7 @@
 #include "radiosity/base.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/names.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/surface_groups.h"
 
@@ -56,9 +57,11 @@ std::vector<double> emissivities(const NamedFactors& factors, const PatchMesh& m
                                  const PatchMaterials& materials);
 
 enum class TableLayout {
-  wide,  ///< a row a surface, a column a receiver
-  tall   ///< a row a pair; with numbered rows only pairs that are not 0
+  wide,      ///< a row a surface, a column a receiver
+  long_rows  ///< a row a pair; with numbered rows only pairs that are not 0
 };
+inline constexpr NameTable<TableLayout, 2> kTableLayoutNames{
+    {{TableLayout::wide, "wide"}, {TableLayout::long_rows, "long"}}};
 
 // Each writes its file whole or not at all, with numbers in the fewest digits that read back alike.
 // Errors: InputError if a receiver has another one's name (the sky's, "backs"), or if numbered rows
@@ -77,12 +80,12 @@ void checkView3dRows(const std::string& path, const NamedFactors& rows);
 
 /// Comma-separated (RFC 4180), with a header. Wide: name, area_m2, a column a receiver, the sky's,
 /// backs, sum (of these; 1 except for errors), error (of the row), reciprocity_m2 (the row's
-/// largest residual). Tall: from, to, form_factor, error, reciprocity_m2. Without error figures
+/// largest residual). Long: from, to, form_factor, error, reciprocity_m2. Without error figures
 /// their columns are left out.
 void writeFactorsCsv(const std::string& path, const NamedFactors& factors, TableLayout layout,
                      Progress& progress);
 /// The same as one object: names, area_m2, error, sky_name and, wide, form_factors (N x N), sky,
-/// backs, entry_error, reciprocity_m2 (N x N); tall, a list `pairs`.
+/// backs, entry_error, reciprocity_m2 (N x N); long, a list `pairs`.
 void writeFactorsJson(const std::string& path, const NamedFactors& factors, TableLayout layout,
                       Progress& progress);
 /// A Markdown table, `digits` significant digits, at most `most` rows; a line counts the rest.

@@ -13,6 +13,8 @@
 #include "cli/request.h"
 #include "cli/validators.h"
 #include "cli/words.h"
+#include "radiosity/compare.h"
+#include "radiosity/names.h"
 #include "radiosity/version.h"
 
 namespace radiosity::cli {
@@ -34,7 +36,7 @@ void addCompareOptions(CLI::App& app, Request& r) {
     add(app, "Compare", name, *value, "radiosity|radiance|srgb8",
         "What the numbers of the file mean: W/m^2, W/m^2/sr, or coded for a screen (default: as "
         "the file says; where it does not, this is needed)")
-        ->check(CLI::IsMember({"radiosity", "radiance", "srgb8"}));
+        ->check(CLI::IsMember(namesIn(kLightUnitNames)));
   }
   app.add_flag("--fit-scale", r.fit_scale, "Multiply B by the factor that fits best, and print it")
       ->group("Compare");

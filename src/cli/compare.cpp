@@ -14,6 +14,7 @@
 #include "cli/matrix_commands.h"
 #include "cli/picture.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
@@ -32,31 +33,12 @@ struct Side {
   const ImageFile& image() const { return std::get<ImageFile>(content); }
 };
 
-const char* unitName(LightUnit unit) {
-  switch (unit) {
-    case LightUnit::radiosity:
-      return "radiosity";
-    case LightUnit::radiance:
-      return "radiance";
-    case LightUnit::srgb8:
-      break;
-  }
-  return "srgb8";
-}
-
-std::optional<LightUnit> unitOf(const std::string& word) {
-  for (const LightUnit unit : {LightUnit::radiosity, LightUnit::radiance, LightUnit::srgb8}) {
-    if (word == unitName(unit)) return unit;
-  }
-  return std::nullopt;
-}
-
 std::string optionOf(const Side& side) { return side.label == "A" ? "--a-is" : "--b-is"; }
 
 /// The unit given, or else that of the file. Errors: InputError if there is neither.
 LightUnit decideUnit(const Side& side, const std::string& said, std::optional<LightUnit> of_file,
                      const std::string& what) {
-  const std::optional<LightUnit> word = unitOf(said);
+  const std::optional<LightUnit> word = named(kLightUnitNames, said);
   if (word && of_file == LightUnit::radiosity && *word != LightUnit::radiosity) {
     throw InputError(
         fmt::format("{}: {} says {}, but the file holds radiosity in W/m^2; leave {} "
@@ -127,14 +109,14 @@ Side readSide(const std::string& label, const std::string& path, const std::stri
     if (file.bytes) of_file = LightUnit::srgb8;
     if (!file.bytes && file.quantity == "radiance") of_file = LightUnit::radiance;
     side.unit = decideUnit(side, said, of_file, "pixels");
-    side.light = fmt::format("picture, {}", unitName(side.unit));
+    side.light = fmt::format("picture, {}", nameOf(kLightUnitNames, side.unit));
     side.content = std::move(file);
   } else {
     const LitMesh mesh = readLitMesh(path);
     std::optional<LightUnit> of_file;
     if (mesh.radiosity) of_file = LightUnit::radiosity;
     side.unit = decideUnit(side, said, of_file, "vertex colours");
-    side.light = fmt::format("vertex colours, {}", unitName(side.unit));
+    side.light = fmt::format("vertex colours, {}", nameOf(kLightUnitNames, side.unit));
     side.content = lightOf(mesh, side.unit);
   }
   return side;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 #include <string_view>
 
 #include "base/figure_text.h"
@@ -68,9 +69,9 @@ StageWords wordsOf(Stage stage) {
     case Stage::basis:
       return {Command::solve, "basis", "single lamps", "it still fits"};
     case Stage::gather:
-      break;
+      return {Command::gather, "gather", "gather", "it still fits"};
   }
-  return {Command::gather, "gather", "gather", "it still fits"};
+  throw std::logic_error("a stage without a word");
 }
 
 const char* wordOf(StageAction action) {
@@ -84,9 +85,9 @@ const char* wordOf(StageAction action) {
     case StageAction::kept:
       return "kept";
     case StageAction::dropped:
-      break;
+      return "dropped";
   }
-  return "dropped";
+  throw std::logic_error("an action without a word");
 }
 
 /// Whether a note on the scene only matters for light; heat has emissivities instead.

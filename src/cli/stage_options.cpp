@@ -8,6 +8,7 @@
 #include "cli/options.h"
 #include "cli/validators.h"
 #include "radiosity/names.h"
+#include "radiosity/tables.h"
 
 namespace radiosity::cli {
 
@@ -210,7 +211,7 @@ void addTableOptions(CLI::App& app, Request& r) {
       "repeated");
   add(app, "Tables", "--layout", r.layout, "wide|long",
       "A row a surface and a column a receiver (wide, default), or a row a pair (long)")
-      ->check(CLI::IsMember({"wide", "long"}));
+      ->check(CLI::IsMember(namesIn(kTableLayoutNames)));
   add(app, "Tables", "--sky-name", r.sky_name, "NAME",
       "What the sky is called among the receivers (default sky)");
   add(app, "Tables", "--zone", r.zone, "NAME",

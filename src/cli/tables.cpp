@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "cli/words.h"
+#include "radiosity/names.h"
 #include "radiosity/tables.h"
 
 namespace radiosity::cli {
@@ -79,7 +80,7 @@ class Tables {
 };
 
 TableLayout layoutOf(const Request& request) {
-  return request.layout == "long" ? TableLayout::tall : TableLayout::wide;
+  return named(kTableLayoutNames, request.layout).value_or(TableLayout::wide);
 }
 
 /// Records pairs in the report file.
@@ -115,11 +116,12 @@ void print(Session& session, const NamedFactors& factors, const std::string& bet
     }
   }
   if (!report.muted()) {
-    const bool tall = session.request.layout == "long" || factors.numbered;
+    const bool long_rows = layoutOf(session.request) == TableLayout::long_rows || factors.numbered;
     std::string text =
-        tall ? "" : factorsMarkdown(factors, TableLayout::wide, kTerminalDigits, kTerminalRows);
-    if (tall || (session.request.layout.empty() && text.find('\n') > kTerminalWidth)) {
-      text = factorsMarkdown(factors, TableLayout::tall, kTerminalDigits, kTerminalRows);
+        long_rows ? ""
+                  : factorsMarkdown(factors, TableLayout::wide, kTerminalDigits, kTerminalRows);
+    if (long_rows || (session.request.layout.empty() && text.find('\n') > kTerminalWidth)) {
+      text = factorsMarkdown(factors, TableLayout::long_rows, kTerminalDigits, kTerminalRows);
     }
     std::fputs(("\n" + text + "\n").c_str(), stdout);
   }
@@ -235,7 +237,7 @@ void checkTables(const Session& session, const OutputSet& files,
     }
   }
   if (printsTable(request)) {
-    checkTableRows("table", rowsOf(request.between), TableLayout::tall);
+    checkTableRows("table", rowsOf(request.between), TableLayout::long_rows);
   }
 }
 
