@@ -26,6 +26,15 @@ enum class FormFactorMethod {
   rays  ///< area to area, by counting cosine-distributed rays
 };
 
+/// What made form factors that are there.
+enum class FactorsFrom {
+  exact,
+  rays,
+  hemicube,
+  matrix,  ///< given as a matrix (factorsOfMatrix())
+  file     ///< read from a file of form factors alone (factorsOfFile())
+};
+
 enum class ClosureMode {
   off,
   report,  ///< report how far the rows of a closed scene are from 1, change nothing
@@ -229,7 +238,7 @@ struct FormFactors {
   /// j, stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to
   /// 14 times the true one. Hemicube: empty.
   std::vector<double> error;
-  std::string method = "hemicube";  ///< or "exact", "rays"
+  FactorsFrom method = FactorsFrom::matrix;
   FormFactorReport report;
 };
 

@@ -36,6 +36,12 @@ inline constexpr NameTable<FormFactorMethod, 4> kMethodNames{
      {FormFactorMethod::exact, "exact"},
      {FormFactorMethod::rays, "rays"},
      {FormFactorMethod::hemicube, "hemicube"}}};
+/// The methods have the same words as in kMethodNames.
+inline constexpr NameTable<FactorsFrom, 5> kFactorsFromNames{{{FactorsFrom::exact, "exact"},
+                                                              {FactorsFrom::rays, "rays"},
+                                                              {FactorsFrom::hemicube, "hemicube"},
+                                                              {FactorsFrom::matrix, "matrix"},
+                                                              {FactorsFrom::file, "file"}}};
 inline constexpr NameTable<EyeChoice, 3> kEyeNames{
     {{EyeChoice::cpu, "cpu"}, {EyeChoice::gl, "gl"}, {EyeChoice::automatic, "auto"}}};
 inline constexpr NameTable<ClosureMode, 3> kClosureNames{{{ClosureMode::off, "off"},

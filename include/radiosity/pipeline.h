@@ -321,7 +321,8 @@ class Pipeline {
 
 std::string keyOfMesh(const MeshOptions& options, const Scene& scene);
 std::string keyOfFactors(const FormFactorOptions& options, const PatchMesh& mesh);
-/// `factors_key`, `method`: of the form factors (FormFactors::method).
+/// `factors_key`, `method`: of the form factors; the word of FormFactors::method in
+/// kFactorsFromNames.
 std::string keyOfSolution(const SolveOptions& options, const PatchMaterials& materials,
                           const std::string& factors_key, const std::string& method);
 std::string keyOfHeat(const HeatOptions& options, const HeatConditions& conditions,

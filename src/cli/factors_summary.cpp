@@ -7,6 +7,7 @@
 #include "cli/section.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 
@@ -15,14 +16,14 @@ namespace {
 std::string briefLine(const FormFactors& factors) {
   const FormFactorReport& r = factors.report;
   const std::string scene = r.closed ? "closed scene" : "open scene";
-  if (factors.method == "exact") {
+  if (factors.method == FactorsFrom::exact) {
     const ExactReport& e = r.exact;
     return fmt::format("{}, {} occluded, in {}; {}; {}; error of the matrix about {}",
                        plural(e.unoccluded + e.occluded, "pair", "pairs"), countText(e.occluded),
                        durationText(r.seconds), bytesText(r.matrix_bytes), scene,
                        numberText(r.error_figure, 2));
   }
-  if (factors.method == "rays") {
+  if (factors.method == FactorsFrom::rays) {
     return fmt::format("{} rays in {}; {}; {}; error of the matrix about {}",
                        countText(r.rays.rays), durationText(r.seconds), bytesText(r.matrix_bytes),
                        scene, numberText(r.error_figure, 2));
@@ -146,7 +147,7 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
   if (detail == Detail::brief) report.line("", briefLine(factors));
   {
     const Section section(report, detail, "form_factors", "Form factors");
-    report.text("method", "method", factors.method);
+    report.text("method", "method", nameOf(kFactorsFromNames, factors.method));
     if (!r.method_reason.empty()) report.text("method_reason", "  because", r.method_reason);
     report.count("empty_rows", "empty rows (degenerate)", r.empty_rows);
     report.seconds("seconds", "time", r.seconds);
@@ -156,9 +157,9 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
     report.bytes("matrix_bytes", "matrix in memory", r.matrix_bytes);
     report.bytes("estimated_bytes", "  estimated before", r.estimated_bytes);
     report.count("polygons", "planar polygons", r.polygons);
-    if (factors.method == "exact") {
+    if (factors.method == FactorsFrom::exact) {
       exactFigures(report, r.exact);
-    } else if (factors.method == "rays") {
+    } else if (factors.method == FactorsFrom::rays) {
       rayFigures(report, r.rays);
     } else {
       hemicubeFigures(report, r);

@@ -70,7 +70,8 @@ void balanceFigures(Report& report, const HeatBalance& b, double given_off) {
 void factorError(Report& report, const FormFactors& factors) {
   if (factors.error.empty()) {
     report.text("factor_error", "error of form factors",
-                "unknown by " + factors.method + "; --method exact or rays says it");
+                "unknown by " + nameOf(kFactorsFromNames, factors.method) +
+                    "; --method exact or rays says it");
     return;
   }
   report.number("factor_error", "error of form factors", factors.report.error_figure);

@@ -205,8 +205,9 @@ void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
   summarize(pipeline, event);
   if (event.stage != Stage::form_factors || event.action != StageAction::reused) return;
   // Computed form factors were noted when they were planned.
-  const std::string& method = made(pipeline.results().factors).method;
-  if (const auto known = named(kMethodNames, method)) noteUnused(*known);
+  const FactorsFrom made_by = made(pipeline.results().factors).method;
+  const auto method = named(kMethodNames, nameOf(kFactorsFromNames, made_by));
+  if (method) noteUnused(*method);
 }
 
 void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event) {

@@ -62,7 +62,7 @@ Json materialsOf(const Scene& scene, const std::vector<MaterialColours>& colours
 
 /// The tolerance of the method; null for hemicubes, which have none.
 Json toleranceOf(const FormFactors& factors, const FormFactorOptions& options) {
-  const auto method = named(kMethodNames, factors.method);
+  const auto method = named(kMethodNames, nameOf(kFactorsFromNames, factors.method));
   if (!method || *method == FormFactorMethod::hemicube) return nullptr;
   return factors.report.rays.loosened_tolerance.value_or(options.toleranceOf(*method));
 }
@@ -125,7 +125,7 @@ void describeScene(Json& header, const Scene& scene, const PatchMesh& mesh,
 void describeSolution(Json& header, const FormFactors& factors, const Solution& solution,
                       const PipelineOptions& options) {
   header["bands"] = solution.bands;
-  header["method"] = factors.method;
+  header["method"] = nameOf(kFactorsFromNames, factors.method);
   header["tolerance"] = toleranceOf(factors, options.factors);
   header["closed"] = factors.report.closed;
   header["sees_out"] = seesOut(factors);

@@ -124,7 +124,7 @@ const MeshResult& Pipeline::mesh() {
 bool Pipeline::factorsFit(const FormFactors& factors, const std::string& factors_key,
                           const StageKey& key, std::optional<FormFactorPlan>& plan) const {
   if (factors_key == key.text()) return true;
-  const std::string& method = factors.method;
+  const std::string method = nameOf(kFactorsFromNames, factors.method);
   const StageKey made_with = usedKey(StageKey(factors_key), method);
   if (made_with.text() != usedKey(key, method).text()) return false;
   const FormFactorMethod made_by =
@@ -232,7 +232,8 @@ const ExchangeMatrix& Pipeline::matrix() {
 
 StageKey Pipeline::usedFactorsKey() const {
   if (!results_.factors) return {};
-  return usedKey(StageKey(results_.factors_key), results_.factors->method);
+  return usedKey(StageKey(results_.factors_key),
+                 nameOf(kFactorsFromNames, results_.factors->method));
 }
 
 const PatchMaterials& Pipeline::materialsOfMesh() {

@@ -209,7 +209,8 @@ void bindFactors(py::module_& module) {
   type.def_property_readonly(
       "mesh", [](const H& h) { return std::const_pointer_cast<MeshHandle>(h.mesh); });
   type.def_readonly("names", &H::names);
-  type.def_property_readonly("method", [](const H& h) { return h.factors.method; });
+  type.def_property_readonly(
+      "method", [](const H& h) { return nameOf(kFactorsFromNames, h.factors.method); });
   type.def_property_readonly("symmetric",
                              [](const H& h) { return h.factors.matrix.isSymmetric(); });
   type.def_property_readonly("report", [](const H& h) { return dictOf(h.factors.report); });

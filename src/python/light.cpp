@@ -61,7 +61,8 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
   });
   handle->key = [options, self = handle.get()] {
     const FactorsHandle& made_of = *self->factors;
-    return keyOfSolution(options, *self->materials, made_of.key(), made_of.factors.method);
+    return keyOfSolution(options, *self->materials, made_of.key(),
+                         nameOf(kFactorsFromNames, made_of.factors.method));
   };
   return handle;
 }
@@ -100,7 +101,8 @@ std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
   });
   handle->key = [options, conditions, self = handle.get()] {
     const FactorsHandle& made_of = *self->factors;
-    return keyOfHeat(options, conditions, made_of.key(), made_of.factors.method);
+    return keyOfHeat(options, conditions, made_of.key(),
+                     nameOf(kFactorsFromNames, made_of.factors.method));
   };
   return handle;
 }

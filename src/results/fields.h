@@ -236,7 +236,7 @@ void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
 /// The accounts; the matrix itself is streamed (matrix_blocks.h).
 template <class Archive>
 void describe(Archive& a, Described<Archive, FormFactors>& f) {
-  a("method", f.method);
+  a.choice("method", f.method, kFactorsFromNames);
   a("fronts", f.fronts);
   a("backs", f.backs);
   a("sky", f.sky);

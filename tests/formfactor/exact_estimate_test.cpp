@@ -179,7 +179,7 @@ TEST(Auto, RaysTakeThePlaceOfExactThatTakesFarLongerThanForeseen) {
   ASSERT_EQ(plan.method, FormFactorMethod::exact);
   plan.seconds = -1e3;  // any time is too long
   const FormFactors f = computeFormFactors(plan, silent);
-  EXPECT_EQ(f.method, "rays");
+  EXPECT_EQ(f.method, FactorsFrom::rays);
   EXPECT_EQ(f.report.method_reason.rfind("exact, which was to take", 0), 0u);
   ASSERT_FALSE(f.report.notes.empty());
   FormFactorOptions rays = options;
@@ -195,7 +195,7 @@ TEST(Auto, RaysTakeThePlaceOfExactThatTakesFarLongerThanForeseen) {
   exact.method = FormFactorMethod::exact;
   plan = planFormFactors(mesh, exact, silent);
   plan.seconds = -1e3;
-  EXPECT_EQ(computeFormFactors(plan, silent).method, "exact");
+  EXPECT_EQ(computeFormFactors(plan, silent).method, FactorsFrom::exact);
 }
 
 TEST(Plan, CanBeRunSeveralTimes) {

@@ -10,6 +10,7 @@
 
 #include "exact_scenes.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/names.h"
 #include "support/mesh_builder.h"
 #include "support/scene_builder.h"
 #include "truth/closed_forms.h"
@@ -36,7 +37,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorMethod method, double toler
 
 /// Invariants of any row of either method.
 void expectSane(const PatchMesh& mesh, const FormFactors& f, const std::string& what) {
-  const bool exact = f.method == "exact";
+  const bool exact = f.method == FactorsFrom::exact;
   ASSERT_EQ(f.fronts.size(), mesh.size());
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     double sum = 0;
@@ -403,14 +404,18 @@ TEST(Sameness, NoBitDependsOnThreadsVectorsOrPowersOfTwo) {
     const PatchMesh mesh = turnedBoxes();
     const FormFactors plain = compute(mesh, method);
     setThreads(1);
-    EXPECT_EQ(largestDifference(plain, compute(mesh, method)), 0) << plain.method;
+    EXPECT_EQ(largestDifference(plain, compute(mesh, method)), 0)
+        << nameOf(kFactorsFromNames, plain.method);
     setThreads(3);
-    EXPECT_EQ(largestDifference(plain, compute(mesh, method)), 0) << plain.method;
+    EXPECT_EQ(largestDifference(plain, compute(mesh, method)), 0)
+        << nameOf(kFactorsFromNames, plain.method);
     setThreads(0);
-    EXPECT_EQ(largestDifference(plain, compute(mesh, method, 1e-3, false)), 0) << plain.method;
+    EXPECT_EQ(largestDifference(plain, compute(mesh, method, 1e-3, false)), 0)
+        << nameOf(kFactorsFromNames, plain.method);
     for (const double scale : {0x1p-40, 0x1p33}) {
       const PatchMesh scaled = transformed(mesh, scale, Vec3(0.0), 0);
-      EXPECT_EQ(largestDifference(plain, compute(scaled, method)), 0) << plain.method << scale;
+      EXPECT_EQ(largestDifference(plain, compute(scaled, method)), 0)
+          << nameOf(kFactorsFromNames, plain.method) << scale;
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/names.h"
 #include "radiosity/pipeline.h"
 #include "support/results_folder.h"
 #include "support/scene_builder.h"
@@ -148,8 +149,8 @@ TEST_F(PipelineStages, StagesMadeWithoutAPipelineAreReusedByTheirKeys) {
   results.solution = solve(factors, *results.materials, mesh, options.solve, quiet);
   results.mesh_key = keyOfMesh(options.mesh, *results.scene);
   results.factors_key = keyOfFactors(options.factors, mesh);
-  results.solution_key =
-      keyOfSolution(options.solve, *results.materials, results.factors_key, factors.method);
+  results.solution_key = keyOfSolution(options.solve, *results.materials, results.factors_key,
+                                       nameOf(kFactorsFromNames, factors.method));
   writeResults(file, results, factors, quiet);
 
   Recorder recorder;

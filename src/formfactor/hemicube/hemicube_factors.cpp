@@ -255,7 +255,7 @@ void reportCounts(const HemicubeRowCounts& all, std::size_t n, FormFactorReport&
 FormFactors emptyRows(const PatchMesh& mesh, const FormFactorOptions& options,
                       std::shared_ptr<ScratchMemory> scratch) {
   FormFactors result;
-  result.method = "hemicube";
+  result.method = FactorsFrom::hemicube;
   result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision(), std::move(scratch));
   for (std::vector<double>* account : {&result.fronts, &result.backs, &result.sky}) {
     account->assign(mesh.size(), 0.0);

@@ -208,7 +208,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
                        Processes* processes) {
   const std::size_t n = scene.size();
   FormFactors result;
-  result.method = "rays";
+  result.method = FactorsFrom::rays;
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
   report.estimated_bytes = estimate.memory.bytes;

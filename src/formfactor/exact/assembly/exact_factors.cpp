@@ -207,7 +207,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
                                ? shareOf(estimate.memory, estimate.matrix_bytes, processes->size())
                                : estimate.memory;
   FormFactors result;
-  result.method = "exact";
+  result.method = FactorsFrom::exact;
   FormFactorReport& report = result.report;
   report.polygons = mesh.polygons.size();
   report.simd_target = clipKernels(options.simd).target;
