@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "base/lower_case.h"
+
 namespace radiosity {
 
 namespace {
@@ -85,10 +87,8 @@ std::string imageFormatOf(Bytes start, const std::string& name) {
       std::isspace(start[2]) != 0) {
     return "pnm";
   }
-  std::string end = name.substr(name.size() - std::min<std::size_t>(name.size(), 4));
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return char(std::tolower(c)); });
-  return end == ".tga" ? "targa" : "";
+  const std::size_t last = name.size() - std::min<std::size_t>(name.size(), 4);
+  return lowerCase(name.substr(last)) == ".tga" ? "targa" : "";
 }
 
 std::optional<Size> imageSizeOf(Bytes start, const std::string& format) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "scene/text.h"
+#include "base/lower_case.h"
 
 namespace radiosity {
 

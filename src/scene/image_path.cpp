@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/text.h"
+#include "base/lower_case.h"
 
 namespace radiosity {
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 namespace radiosity {
 
@@ -28,12 +27,6 @@ std::vector<std::string_view> splitWords(std::string_view text) {
     begin = text.find_first_not_of(kBlanks, end);
   }
   return words;
-}
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
 }
 
 std::string joinNames(std::span<const std::string> names, std::size_t limit) {

@@ -22,9 +22,6 @@ std::string onOneLine(std::string_view text);
 /// The words between blanks (kBlanks).
 std::vector<std::string_view> splitWords(std::string_view text);
 
-/// `text` with small ASCII letters.
-std::string lowerCase(std::string_view text);
-
 /// "a, b, c"; with more than `limit` names "... and 5 more".
 std::string joinNames(std::span<const std::string> names, std::size_t limit = 12);
 

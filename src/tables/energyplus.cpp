@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <map>
 
+#include "base/lower_case.h"
 #include "results/checked_file.h"
 #include "tables/table_rows.h"
 
@@ -49,10 +49,7 @@ void requireNames(const std::string& path, const NamedFactors& factors) {
   std::map<std::string, std::string> seen;
   for (const std::string& name : factors.names) {
     requireName(path, name);
-    std::string lower = name;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    const auto [other, added] = seen.emplace(lower, name);
+    const auto [other, added] = seen.emplace(lowerCase(name), name);
     if (added) continue;
     throw InputError(fmt::format(
         "{}: {} and {} are one name for EnergyPlus, which ignores case; rename one (--group "

@@ -2,10 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 
 #include "base/input_file.h"
+#include "base/lower_case.h"
 #include "base/parse.h"
 #include "scene/text.h"
 #include "tables/matrix_readers.h"
@@ -61,9 +60,7 @@ class Reader {
 
   void readBanner() {
     const std::size_t end = std::min(text_.find('\n'), text_.size());
-    std::string banner(text_.substr(0, end));
-    std::transform(banner.begin(), banner.end(), banner.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
+    const std::string banner = lowerCase(text_.substr(0, end));
     const std::vector<std::string_view> words = splitWords(banner);
     at_ = end + 1;
     line_number_ = 1;

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
-#include "scene/text.h"
+#include "base/lower_case.h"
 
 namespace radiosity {
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/lower_case.h"
 #include "base/parse.h"
 #include "scene/text.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/lower_case.h"
 #include "base/parse.h"
-#include "scene/text.h"
 
 namespace radiosity {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/input_file.h"
+#include "base/lower_case.h"
 #include "base/parse.h"
 #include "scene/inp/inp_bodies.h"
 #include "scene/inp/inp_keyword.h"

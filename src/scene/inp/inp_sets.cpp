@@ -4,8 +4,8 @@
 
 #include <optional>
 
+#include "base/lower_case.h"
 #include "base/parse.h"
-#include "scene/text.h"
 
 namespace radiosity {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
+#include "base/lower_case.h"
 #include "base/parse.h"
-#include "scene/text.h"
 
 namespace radiosity {
 

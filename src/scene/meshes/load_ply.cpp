@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/input_file.h"
+#include "base/lower_case.h"
 #include "base/parse.h"
 #include "scene/grouped_faces.h"
 #include "scene/mesh_cursor.h"

@@ -13,6 +13,7 @@
 
 #include "base/hash.h"
 #include "base/input_file.h"
+#include "base/lower_case.h"
 #include "base/parse.h"
 #include "scene/grouped_faces.h"
 #include "scene/readers.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/lower_case.h"
 #include "base/parse.h"
 #include "scene/obj/obj_scan.h"
 #include "scene/text.h"

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/lower_case.h"
 #include "radiosity/base.h"
-#include "scene/text.h"
 
 namespace radiosity {
 

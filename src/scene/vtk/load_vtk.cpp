@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/input_file.h"
+#include "base/lower_case.h"
 #include "scene/mesh_cursor.h"
 #include "scene/readers.h"
-#include "scene/text.h"
 #include "scene/vtk/vtk_cells.h"
 
 namespace radiosity {
