@@ -4,6 +4,7 @@ shared between them; unsupported requests are refused in a line."""
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import time
@@ -140,6 +141,15 @@ class MpiTest(CliTest):
         one = self.radiosity_of("solved_by_one.h5")
         # Both are within their bounds of the solution, of a residual of 1e-6 of the lamp.
         self.assertLess(np.abs(self.radiosity_of("solved_by_many.h5") - one).max(), 1e-5 * one.max())
+
+    def test_commands_of_the_readme_run(self):
+        (self.folder / "data").symlink_to(DATA)
+        readme = Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "src/distributed/README.md"
+        lines = re.findall(r'^(?:PETSC_OPTIONS="(.*)" )?mpirun -n \d+ radiosity (.*)$',
+                           readme.read_text(), re.M)
+        self.assertEqual(len(lines), 3)
+        for petsc, arguments in lines:
+            self.mpirun(2, *shlex.split(arguments), petsc=petsc)
 
     def test_petsc_takes_its_own_options(self):
         options = ["solve", BOX, "--patches", "300", "--method", "exact", "--solve-tolerance", "1e-9"]
