@@ -32,11 +32,11 @@ struct Split {
 Split splitBy(const std::vector<CellPart>& parts, const Line& line) {
   Split split;
   for (const CellPart& part : parts) {
-    const double least = kSliverCell * doubledArea(part.corners);
+    const double least = kSliverCell * std::abs(polygonArea(part.corners));
     CellPart in{clipConvex(part.corners, line.a, line.b, line.c), part.item};
     CellPart out{clipConvex(part.corners, -line.a, -line.b, -line.c), part.item};
-    const bool has_in = doubledArea(in.corners) > least;
-    const bool has_out = doubledArea(out.corners) > least;
+    const bool has_in = std::abs(polygonArea(in.corners)) > least;
+    const bool has_out = std::abs(polygonArea(out.corners)) > least;
     if (has_in) split.inside.push_back(std::move(in));
     if (has_out) split.outside.push_back(std::move(out));
   }
@@ -87,8 +87,6 @@ std::pair<Line, Split> bestSplit(const std::vector<CellPart>& parts, bool thorou
 }
 
 }  // namespace
-
-double doubledArea(const std::vector<Vec2>& polygon) { return 2 * std::abs(polygonArea(polygon)); }
 
 std::vector<Vec2> clipConvex(const std::vector<Vec2>& polygon, double a, double b, double c) {
   const Line line{a, b, c};

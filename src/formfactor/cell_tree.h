@@ -21,9 +21,6 @@ struct CellPart {
   std::int32_t item;
 };
 
-/// Twice the area, positive whichever way round.
-double doubledArea(const std::vector<Vec2>& polygon);
-
 /// Keeps the part of a convex polygon where a x + b y + c >= 0.
 std::vector<Vec2> clipConvex(const std::vector<Vec2>& polygon, double a, double b, double c);
 

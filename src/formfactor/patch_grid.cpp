@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/geometry/clip.h"
+
 namespace radiosity {
 namespace {
 
@@ -99,7 +101,7 @@ PatchGrid::PatchGrid(std::span<const GridPiece> pieces, const Vec3& origin, cons
       u.add(outline.back().x);
       v.add(outline.back().y);
     }
-    const double least = kSliverPatch * std::min(doubledArea(outline), 1.0);
+    const double least = kSliverPatch * std::min(2 * std::abs(polygonArea(outline)), 1.0);
     const CellRange columns = cellRange(u, columns_);
     const CellRange rows = cellRange(v, rows_);
     for (std::int32_t column = columns.first; column < columns.end; ++column) {
@@ -108,7 +110,7 @@ PatchGrid::PatchGrid(std::span<const GridPiece> pieces, const Vec3& origin, cons
       for (std::int32_t row = rows.first; row < rows.end; ++row) {
         std::vector<Vec2> part = clipConvex(strip, 0, 1, -row);
         part = clipConvex(part, 0, -1, row + 1.0);
-        if (!(doubledArea(part) > least)) continue;
+        if (!(2 * std::abs(polygonArea(part)) > least)) continue;
         parts[std::size_t(row) * std::size_t(columns_) + std::size_t(column)].push_back(
             {std::move(part), piece.item});
       }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 
+#include "base/geometry/box.h"
 #include "base/geometry/segment.h"
 #include "base/parallel.h"
 #include "formfactor/hemicube/eye_frame.h"
@@ -132,13 +132,7 @@ class VertexSide {
 };
 
 double coincidenceOf(const PatchMesh& mesh) {
-  Vec3 lower(HUGE_VAL);
-  Vec3 upper(-HUGE_VAL);
-  for (const Vec3& v : mesh.vertices) {
-    lower = glm::min(lower, v);
-    upper = glm::max(upper, v);
-  }
-  return mesh.vertices.empty() ? 0 : MeshOptions().weld * glm::distance(lower, upper);
+  return MeshOptions().weld * boxOf(mesh.vertices).diagonal();
 }
 
 /// A different seed for each corner of a patch, so that the eyes of one patch have different turns.

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "base/geometry/clip.h"
 #include "base/geometry/plane_frame.h"
 #include "mesh/edge_key.h"
 #include "mesh/plane_image.h"
@@ -51,18 +52,9 @@ bool isFlat(std::span<const Vec2> p, const std::vector<Index>& rest, std::size_t
   return turn(p[rest[(k + n - 1) % n]], p[rest[k]], p[rest[(k + 1) % n]]) == 0;
 }
 
-/// Twice the signed area.
-double doubledArea(std::span<const Vec2> outline) {
-  double area = 0;
-  for (std::size_t k = 2; k < outline.size(); ++k) {
-    area += turn(outline[0], outline[k - 1], outline[k]);
-  }
-  return area;
-}
-
 Triangles clipEars(std::span<const Vec2> outline) {
   Triangles triangles;
-  const double sign = doubledArea(outline) < 0 ? -1.0 : 1.0;
+  const double sign = polygonArea(outline) < 0 ? -1.0 : 1.0;
   std::vector<Index> rest(outline.size());
   std::iota(rest.begin(), rest.end(), 0u);
   std::size_t k = 0;
@@ -250,7 +242,7 @@ std::optional<Triangles> triangulatePolygon(std::span<const Vec3> vertices,
 
 std::optional<Triangles> delaunayTriangles(std::span<const Vec2> outline) {
   const FlatLoops loops{{outline.begin(), outline.end()}, {outline.size()}};
-  return LoopTriangulation(loops).run(doubledArea(outline) < 0 ? -1 : 1);
+  return LoopTriangulation(loops).run(polygonArea(outline) < 0 ? -1 : 1);
 }
 
 std::vector<std::array<Index, 3>> triangulateOutline(std::span<const Vec2> outline) {

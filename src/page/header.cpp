@@ -1,9 +1,9 @@
 #include "page/header.h"
 
 #include <algorithm>
-#include <glm/geometric.hpp>
 #include <numbers>
 
+#include "base/geometry/box.h"
 #include "radiosity/names.h"
 #include "radiosity/version.h"
 #include "solve/beyond_means.h"
@@ -18,17 +18,6 @@ Json json(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 Vec3 at(const std::vector<double>& values, std::size_t patch) {
   return {values[3 * patch], values[3 * patch + 1], values[3 * patch + 2]};
-}
-
-double diagonalOf(const PatchMesh& mesh) {
-  if (mesh.vertices.empty()) return 0;
-  Vec3 lower = mesh.vertices[0];
-  Vec3 upper = lower;
-  for (const Vec3& v : mesh.vertices) {
-    lower = glm::min(lower, v);
-    upper = glm::max(upper, v);
-  }
-  return glm::length(upper - lower);
 }
 
 /// Sums over the patches of one material.
@@ -117,7 +106,7 @@ void describeScene(Json& header, const Scene& scene, const PatchMesh& mesh,
                       {"target", json(camera.target)},
                       {"up", json(camera.up)},
                       {"fov", camera.vertical_fov * 180 / std::numbers::pi}};
-  header["diagonal"] = diagonalOf(mesh);
+  header["diagonal"] = boxOf(mesh.vertices).diagonal();
   header["surfaces"] = surfacesOf(scene);
   header["materials"] = materialsOf(scene, materialColours(scene, mesh, patches));
 }

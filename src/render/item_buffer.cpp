@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/geometry/clip.h"
 #include "base/parallel.h"
 
 namespace radiosity {
@@ -22,22 +23,6 @@ std::vector<Index> ranksByName(const std::vector<std::string>& names) {
   std::vector<Index> rank(names.size());
   for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = Index(k);
   return rank;
-}
-
-/// Clips a convex polygon to the half-space f >= 0, f linear and homogeneous (a plane through the
-/// eye), after Sutherland & Hodgman 1974.
-template <class Function>
-void clip(std::vector<Vec3>& polygon, const Function& f) {
-  std::vector<Vec3> kept;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec3& a = polygon[k];
-    const Vec3& b = polygon[(k + 1) % polygon.size()];
-    const double fa = f(a);
-    const double fb = f(b);
-    if (fa >= 0) kept.push_back(a);
-    if ((fa >= 0) != (fb >= 0)) kept.push_back((a * fb - b * fa) / (fb - fa));
-  }
-  polygon.swap(kept);
 }
 
 }  // namespace
@@ -126,10 +111,11 @@ ItemBuffer::Bounds ItemBuffer::boundsOf(const std::array<Index, 3>& piece) const
   if (all([](const Vec3& p) { return p.z > 0; })) return boundsInFront(corners);
 
   std::vector<Vec3> polygon(corners.begin(), corners.end());
-  clip(polygon, [](const Vec3& p) { return p.x; });
-  clip(polygon, [](const Vec3& p) { return p.y; });
-  clip(polygon, [w](const Vec3& p) { return w * p.z - p.x; });
-  clip(polygon, [h](const Vec3& p) { return h * p.z - p.y; });
+  std::vector<Vec3> scratch;
+  clipLoop(polygon, scratch, [](const Vec3& p) { return p.x; });
+  clipLoop(polygon, scratch, [](const Vec3& p) { return p.y; });
+  clipLoop(polygon, scratch, [w](const Vec3& p) { return w * p.z - p.x; });
+  clipLoop(polygon, scratch, [h](const Vec3& p) { return h * p.z - p.y; });
   if (polygon.empty()) return nothing;
   // The rest lies in the frustum, where z = 0 only at the eye: then the piece fills the picture.
   for (const Vec3& p : polygon) {

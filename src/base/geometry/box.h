@@ -31,6 +31,15 @@ struct BoxOf {
   Vec size() const { return high - low; }
   Vec centre() const { return 0.5 * (low + high); }
   double diagonal() const { return glm::length(size()); }
+  /// The axis of the longest side; of sides of one length the first.
+  int longestAxis() const {
+    const Vec sides = size();
+    int longest = 0;
+    for (int k = 1; k < kAxes; ++k) {
+      if (sides[k] > sides[longest]) longest = k;
+    }
+    return longest;
+  }
   /// The point at a share of each side, from the low end.
   Vec at(const Vec& share) const { return low + share * size(); }
   BoxOf grown(double by) const { return {low - Vec(by), high + Vec(by)}; }

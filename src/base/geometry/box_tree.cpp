@@ -35,9 +35,7 @@ void BoxTree::build(Index node, Index first, Index count, Index below,
   for (Index k = first; k < first + count; ++k) bound.add(boxes[order_[k]]);
   nodes_[node] = {bound, first, count, count};
   if (count <= kLeafBoxes) return;
-  const Vec3 extent = bound.high - bound.low;
-  const int axis =
-      extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+  const int axis = bound.longestAxis();
   const Index half = count / 2;
   std::nth_element(order_.begin() + first, order_.begin() + first + half,
                    order_.begin() + first + count, [&](Index a, Index b) {

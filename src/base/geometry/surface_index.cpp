@@ -64,13 +64,8 @@ std::array<Vec3, 3> SurfaceIndex::cornersOf(std::size_t triangle) const {
 
 void SurfaceIndex::build(std::size_t begin, std::size_t end) {
   Node node;
-  node.lower = Vec3(HUGE_VAL);
-  node.upper = Vec3(-HUGE_VAL);
   for (std::size_t k = begin; k < end; ++k) {
-    for (const Vec3& corner : cornersOf(order_[k])) {
-      node.lower = glm::min(node.lower, corner);
-      node.upper = glm::max(node.upper, corner);
-    }
+    for (const Vec3& corner : cornersOf(order_[k])) node.box.add(corner);
   }
   const std::size_t place = nodes_.size();
   nodes_.push_back(node);
@@ -79,8 +74,7 @@ void SurfaceIndex::build(std::size_t begin, std::size_t end) {
     nodes_[place].count = std::uint32_t(end - begin);
     return;
   }
-  const Vec3 size = node.upper - node.lower;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+  const int axis = node.box.longestAxis();
   const auto middle = [&](std::uint32_t t) {
     const auto [a, b, c] = cornersOf(t);
     return a[axis] + b[axis] + c[axis];
@@ -98,7 +92,7 @@ void SurfaceIndex::build(std::size_t begin, std::size_t end) {
 }
 
 double SurfaceIndex::distance2(const Node& node, const Vec3& point) const {
-  const Vec3 outside = glm::max(glm::max(node.lower - point, point - node.upper), Vec3(0.0));
+  const Vec3 outside = glm::max(glm::max(node.box.low - point, point - node.box.high), Vec3(0.0));
   return glm::dot(outside, outside);
 }
 

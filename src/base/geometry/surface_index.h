@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/geometry/box.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -35,8 +36,7 @@ class SurfaceIndex {
 
  private:
   struct Node {
-    Vec3 lower{0.0};
-    Vec3 upper{0.0};
+    Box3 box;
     std::uint32_t begin =
         0;  ///< leaf: into order_; inner node: its second child (the first is next)
     std::uint32_t count = 0;  ///< 0: inner node

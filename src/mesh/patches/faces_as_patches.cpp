@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
 #include "base/geometry/segment.h"
 #include "mesh/patches/face_crossings.h"
@@ -51,14 +51,10 @@ class FacePatches {
   FacePatches(const Scene& scene, const MeshOptions& options, MeshReport& report,
               Progress& progress)
       : scene_(scene), report_(report), progress_(progress) {
-    Vec3 lower(std::numeric_limits<double>::infinity());
-    Vec3 upper = -lower;
-    for (const Index v : scene.corners) {
-      lower = glm::min(lower, scene.vertices[v]);
-      upper = glm::max(upper, scene.vertices[v]);
-    }
-    centre_ = 0.5 * (lower + upper);
-    coincidence_ = options.weld * glm::length(upper - lower);
+    Box3 box;
+    for (const Index v : scene.corners) box.add(scene.vertices[v]);
+    centre_ = box.centre();
+    coincidence_ = options.weld * box.diagonal();
   }
 
   PatchMesh build() {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <limits>
 
+#include "base/geometry/box.h"
 #include "base/geometry/clip.h"
 
 namespace radiosity {
@@ -108,12 +108,9 @@ Vec3 TextureMean::at(const Vec2& uv) const {
 }
 
 Vec3 TextureMean::over(std::span<const Vec2> uv) const {
-  Vec2 low = uv[0];
-  Vec2 high = uv[0];
-  for (const Vec2& p : uv) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
+  Box2 box;
+  for (const Vec2& p : uv) box.add(p);
+  const auto& [low, high] = box;
   std::size_t l = 0;
   const auto texels = [&] {
     return ((high.x - low.x) * double(levels_[l].width) + 1) *

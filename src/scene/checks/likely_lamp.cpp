@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/geometry/plane_frame.h"
 #include "radiosity/scene.h"
 
 namespace radiosity {
@@ -95,10 +96,8 @@ std::string facingDown(const Scene& scene) {
   for (std::size_t f = 0; f < scene.faceCount(); ++f) {
     const auto face = scene.face(f);
     const Vec3& first = scene.vertices[face[0]];
-    Vec3 sum(0.0);
-    for (std::size_t k = 1; k + 1 < face.size(); ++k) {
-      sum += glm::cross(scene.vertices[face[k]] - first, scene.vertices[face[k + 1]] - first) * 0.5;
-    }
+    const Vec3 sum = vectorArea(
+        face.size(), [&](std::size_t k) -> const Vec3& { return scene.vertices[face[k]]; });
     for (const Index v : face) {
       low = std::min(low, scene.vertices[v][up]);
       high = std::max(high, scene.vertices[v][up]);

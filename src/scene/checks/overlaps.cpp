@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <tuple>
 
 #include "base/geometry/box_tree.h"
+#include "base/geometry/clip.h"
+#include "base/geometry/plane_frame.h"
 
 namespace radiosity {
 
@@ -22,17 +23,22 @@ Box3 boxOf(const WeldedFaces& faces, std::size_t f) {
 
 using Triangle = std::array<Vec2, 3>;
 
-double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
-
-double signedArea(const Triangle& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
+double signedArea(const Triangle& t) { return 0.5 * cross2(t[1] - t[0], t[2] - t[0]); }
 
 /// A convex polygon of few corners, on the stack.
-struct SmallPolygon {
-  std::array<Vec2, 12> corner;  // a triangle clipped by three half-planes has 6, but for rounding
-  std::size_t size = 0;
+class SmallPolygon {
+ public:
   void add(const Vec2& p) {
-    if (size < corner.size()) corner[size++] = p;
+    if (count_ < corners_.size()) corners_[count_++] = p;
   }
+  bool empty() const { return count_ == 0; }
+  std::size_t size() const { return count_; }
+  const Vec2& operator[](std::size_t k) const { return corners_[k]; }
+  double area() const { return polygonArea({corners_.data(), count_}); }
+
+ private:
+  std::array<Vec2, 12> corners_;  // a triangle clipped by three half-planes has 6, but for rounding
+  std::size_t count_ = 0;
 };
 
 bool apart(const Triangle& a, const Triangle& b) {
@@ -44,48 +50,26 @@ bool apart(const Triangle& a, const Triangle& b) {
   return false;
 }
 
-/// The common area of two counter-clockwise triangles: one is clipped at the edges of the other
-/// (Sutherland and Hodgman 1974).
+/// The common area of two counter-clockwise triangles: one is clipped at the edges of the other.
 double commonArea(const Triangle& subject, const Triangle& clip) {
   if (apart(subject, clip)) return 0;
   SmallPolygon polygon;
   for (const Vec2& p : subject) polygon.add(p);
-  for (std::size_t e = 0; e < 3 && polygon.size > 0; ++e) {
+  for (std::size_t e = 0; e < 3; ++e) {
     const Vec2 from = clip[e];
     const Vec2 along = clip[(e + 1) % 3] - from;
-    SmallPolygon next;
-    for (std::size_t k = 0; k < polygon.size; ++k) {
-      const Vec2 a = polygon.corner[k];
-      const Vec2 b = polygon.corner[(k + 1) % polygon.size];
-      const double da = cross(along, a - from);
-      const double db = cross(along, b - from);
-      if (da >= 0) next.add(a);
-      if ((da > 0 && db < 0) || (da < 0 && db > 0)) next.add(a + (b - a) * (da / (da - db)));
-    }
-    polygon = next;
+    SmallPolygon kept;
+    clipCorners(
+        polygon, [&](const Vec2& p) { return cross2(along, p - from); },
+        [&](const Vec2& corner) { kept.add(corner); });
+    polygon = kept;
   }
-  double area = 0;
-  for (std::size_t k = 2; k < polygon.size; ++k) {
-    area += signedArea({polygon.corner[0], polygon.corner[k - 1], polygon.corner[k]});
-  }
-  return area;
+  return polygon.area();
 }
-
-/// A plane's own coordinates.
-struct PlaneFrame {
-  Vec3 origin, u, v;
-  Vec2 operator()(const Vec3& p) const {
-    return {glm::dot(p - origin, u), glm::dot(p - origin, v)};
-  }
-};
 
 PlaneFrame frameOf(const WeldedFaces& faces, std::size_t f) {
   const Vec3 normal = glm::normalize(faces.area_vector[f]);
-  const Vec3 size = glm::abs(normal);
-  Vec3 axis(0.0);
-  axis[size.x <= size.y && size.x <= size.z ? 0 : (size.y <= size.z ? 1 : 2)] = 1;
-  const Vec3 u = glm::normalize(glm::cross(axis, normal));
-  return {faces.points[faces.face(f)[0]], u, glm::cross(normal, u)};
+  return makeFrame(faces.points[faces.face(f)[0]], normal, axisAcross(normal));
 }
 
 /// The common area of two polygons of one plane, which may be concave: the indicator of a polygon
@@ -96,8 +80,8 @@ double commonArea(const WeldedFaces& faces, std::size_t f, std::size_t g) {
     const auto face = faces.face(face_index);
     std::vector<Triangle> triangles;
     for (std::size_t k = 2; k < face.size(); ++k) {
-      triangles.push_back({frame(faces.points[face[0]]), frame(faces.points[face[k - 1]]),
-                           frame(faces.points[face[k]])});
+      triangles.push_back({frame.flat(faces.points[face[0]]), frame.flat(faces.points[face[k - 1]]),
+                           frame.flat(faces.points[face[k]])});
     }
     return triangles;
   };

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
+#include "base/geometry/plane_frame.h"
 #include "base/hash.h"
 
 namespace radiosity {
@@ -80,15 +81,6 @@ double width(const WeldedFaces& faces, std::size_t f) {
 
 }  // namespace
 
-Vec3 areaVector(std::span<const Vec3> points, std::span<const Index> corners) {
-  Vec3 sum{0.0};
-  for (std::size_t k = 2; k < corners.size(); ++k) {
-    sum += glm::cross(points[corners[k - 1]] - points[corners[0]],
-                      points[corners[k]] - points[corners[0]]);
-  }
-  return 0.5 * sum;
-}
-
 WeldedFaces weldFaces(const Scene& scene, const Vec3& lower, const Vec3& upper, double weld) {
   WeldedFaces faces;
   faces.centre = 0.5 * (lower + upper);
@@ -98,7 +90,8 @@ WeldedFaces weldFaces(const Scene& scene, const Vec3& lower, const Vec3& upper, 
   faces.offset.push_back(0);
   for (std::size_t f = 0; f < scene.faceCount(); ++f) {
     const std::size_t first = faces.corners.size();
-    for (const Index vertex : scene.face(f)) {
+    const auto face = scene.face(f);
+    for (const Index vertex : face) {
       if (welded[vertex] == kNone) {
         welded[vertex] = set.find(scene.vertices[vertex] - faces.centre);
       }
@@ -109,7 +102,8 @@ WeldedFaces weldFaces(const Scene& scene, const Vec3& lower, const Vec3& upper, 
       faces.corners.pop_back();
     }
     faces.offset.push_back(faces.corners.size());
-    faces.area_vector.push_back(areaVector(scene.vertices, scene.face(f)));
+    faces.area_vector.push_back(vectorArea(
+        face.size(), [&](std::size_t k) -> const Vec3& { return scene.vertices[face[k]]; }));
     const bool thin = faces.face(f).size() < 3 || width(faces, f) <= faces.tolerance;
     faces.degenerate.push_back(thin ? 1 : 0);
   }

@@ -29,8 +29,4 @@ struct WeldedFaces {
 /// `lower`, `upper`: box of the scene. `weld`: coincidence as a fraction of its diagonal.
 WeldedFaces weldFaces(const Scene& scene, const Vec3& lower, const Vec3& upper, double weld);
 
-/// Normal times area of a polygon, by Newell's sum about its first corner: sum (a x b) / 2. It is
-/// correct for concave polygons, and the projected area for polygons that are not planar.
-Vec3 areaVector(std::span<const Vec3> points, std::span<const Index> corners);
-
 }  // namespace radiosity

@@ -1,13 +1,11 @@
 #include "scene/checks/winding_tree.h"
 
 #include <algorithm>
-#include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "base/geometry/box.h"
 #include "base/geometry/solid_angle.h"
 
 namespace radiosity {
@@ -34,14 +32,9 @@ std::size_t WindingTree::build(std::size_t begin, std::size_t end) {
   measure(node);
   nodes_.push_back(node);
   if (end - begin <= kLeaf) return number;
-  Vec3 lower(std::numeric_limits<double>::infinity());
-  Vec3 upper = -lower;
-  for (std::size_t k = begin; k < end; ++k) {
-    lower = glm::min(lower, triangles_[k].corners[0]);
-    upper = glm::max(upper, triangles_[k].corners[0]);
-  }
-  const Vec3 size = upper - lower;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+  Box3 box;
+  for (std::size_t k = begin; k < end; ++k) box.add(triangles_[k].corners[0]);
+  const int axis = box.longestAxis();
   const std::size_t middle = begin + (end - begin) / 2;
   const auto place = triangles_.begin();
   std::nth_element(place + std::ptrdiff_t(begin), place + std::ptrdiff_t(middle),

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
+#include "base/geometry/box.h"
 #include "formfactor/exact/elements/backs_hidden_from_all.h"
 #include "formfactor/exact/elements/clusters.h"
 #include "formfactor/exact/elements/convex_pieces.h"
@@ -101,14 +101,9 @@ class ElementBuilder {
  private:
   void normalise() {
     if (mesh_.vertices.empty()) return;
-    Vec3 lower(std::numeric_limits<double>::infinity());
-    Vec3 upper = -lower;
-    for (const Vec3& vertex : mesh_.vertices) {
-      lower = glm::min(lower, vertex);
-      upper = glm::max(upper, vertex);
-    }
-    set_.middle = 0.5 * (lower + upper);
-    const double diagonal = glm::distance(lower, upper);
+    const Box3 box = boxOf(mesh_.vertices);
+    set_.middle = box.centre();
+    const double diagonal = box.diagonal();
     if (!(diagonal > 0)) return;
     int exponent = 0;
     std::frexp(diagonal, &exponent);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 #include <numeric>
 #include <set>
 #include <utility>
 
+#include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
 #include "base/geometry/point_tree.h"
 
@@ -207,13 +207,7 @@ std::optional<Occluder> convexHull(const std::vector<Vec3>& points,
 }
 
 void boundOccluder(Occluder& occluder) {
-  Vec3 lower = occluder.corners[0];
-  Vec3 upper = lower;
-  for (const Vec3& v : occluder.corners) {
-    lower = glm::min(lower, v);
-    upper = glm::max(upper, v);
-  }
-  occluder.centre = 0.5 * (lower + upper);
+  occluder.centre = boxOf(occluder.corners).centre();
   occluder.radius = 0;
   for (const Vec3& v : occluder.corners) {
     occluder.radius = std::max(occluder.radius, glm::distance(v, occluder.centre));

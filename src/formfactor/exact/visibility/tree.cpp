@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
+
+#include "base/geometry/box.h"
 
 namespace radiosity {
 
@@ -50,14 +51,13 @@ OccluderTree::OccluderTree(const std::vector<Occluder>& occluders)
 }
 
 void OccluderTree::build(Index node, Index first, Index count) {
-  Vec3 lower = occluders_[order_[first]].centre;
-  Vec3 upper = lower;
+  Box3 box;
   for (Index k = first; k < first + count; ++k) {
     const Occluder& occluder = occluders_[order_[k]];
-    lower = glm::min(lower, occluder.centre - Vec3(occluder.radius));
-    upper = glm::max(upper, occluder.centre + Vec3(occluder.radius));
+    box.add(occluder.centre - Vec3(occluder.radius));
+    box.add(occluder.centre + Vec3(occluder.radius));
   }
-  Sphere bound{0.5 * (lower + upper), 0};
+  Sphere bound{box.centre(), 0};
   for (Index k = first; k < first + count; ++k) {
     const Occluder& occluder = occluders_[order_[k]];
     for (const Vec3& corner : occluder.corners) {
@@ -70,9 +70,7 @@ void OccluderTree::build(Index node, Index first, Index count) {
     nodes_[node].count = count;
     return;
   }
-  const Vec3 extent = upper - lower;
-  const int axis =
-      extent.x >= extent.y && extent.x >= extent.z ? 0 : (extent.y >= extent.z ? 1 : 2);
+  const int axis = box.longestAxis();
   const Index half = count / 2;
   std::nth_element(order_.begin() + first, order_.begin() + first + half,
                    order_.begin() + first + count, [&](Index a, Index b) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
 #include "base/geometry/segment.h"
 #include "mesh/cells/region/region.h"
@@ -91,13 +92,9 @@ std::vector<Vec2> backgroundGrid(const Region& region) {
   std::vector<Vec2> turned;
   turned.reserve(region.points.size());
   for (const Vec2& p : region.points) turned.emplace_back(glm::dot(p, u), glm::dot(p, v));
-  Vec2 lower = turned.front();
-  Vec2 upper = lower;
-  for (const Vec2& p : turned) {
-    lower = glm::min(lower, p);
-    upper = glm::max(upper, p);
-  }
-  Grid grid(lower, upper, region.size, std::isfinite(region.longest));
+  Box2 box;
+  for (const Vec2& p : turned) box.add(p);
+  Grid grid(box.low, box.high, region.size, std::isfinite(region.longest));
   for (const auto& loop : region.loops) {
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const FlatSegment s{turned[loop[k]], turned[loop[(k + 1) % loop.size()]]};
