@@ -257,6 +257,8 @@ struct FormFactorPlan {
   /// As FormFactorOptions::tolerance, looser if rays stop early.
   double tolerance = 0;
   double refining = 0;  ///< exact: the share of the seconds that is proportional to 1 / tolerance
+  /// About the seconds for a tolerance that is `times` the plan's, 1 or more.
+  double secondsIfLooser(double times) const;
   /// If rays stop early: seconds for the default tolerance.
   std::optional<double> seconds_to_tolerance;
   /// Seconds of the other one of exact and rays, if both were sampled.

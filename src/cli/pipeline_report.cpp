@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <stdexcept>
 #include <string_view>
@@ -21,8 +20,6 @@ namespace {
 
 /// For longer waits the report suggests options that shorten them.
 constexpr double kLongWait = 60;
-/// The time of rays grows with about this power of 1 / tolerance.
-constexpr double kRaysOrder = 1.6;
 
 /// The options that shorten a wait, and the shorter time if it is known.
 std::string cures(const FormFactorPlan& plan) {
@@ -35,9 +32,8 @@ std::string cures(const FormFactorPlan& plan) {
   const double tolerance = plan.tolerance;
   const double looser = std::min(kLoosest, (rays ? 3 : 10) * tolerance);
   if (looser > tolerance) {
-    const double left = rays ? plan.seconds * std::pow(tolerance / looser, kRaysOrder)
-                             : plan.seconds * (1 - plan.refining * (1 - tolerance / looser));
-    text += fmt::format(" --tolerance {} (about {}),", numberText(looser, 2), durationText(left));
+    text += fmt::format(" --tolerance {} (about {}),", numberText(looser, 2),
+                        durationText(plan.secondsIfLooser(looser / tolerance)));
   }
   text += " fewer --patches";
   if (plan.other_seconds && *plan.other_seconds < plan.seconds) {

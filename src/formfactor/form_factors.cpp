@@ -19,6 +19,7 @@
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/hemicube/hemicube_factors.h"
 #include "formfactor/rays/ray_factors.h"
+#include "formfactor/rays/ray_model.h"
 #include "formfactor/shared_factors.h"
 
 namespace radiosity {
@@ -267,6 +268,13 @@ Precision FormFactorOptions::storedPrecision() const {
                                 : Precision::single_precision);
 }
 
+double FormFactorPlan::secondsIfLooser(double times) const {
+  if (method == FormFactorMethod::hemicube) return seconds;
+  if (method == FormFactorMethod::exact) return seconds * (1 - refining * (1 - 1 / times));
+  // Error squared falls as n^-p with the number n of rays, p = kUsualOrder.
+  return seconds * std::pow(times, -2 / kUsualOrder);
+}
+
 FormFactorPlan planFormFactors(const PatchMesh& mesh, const FormFactorOptions& options,
                                Progress& progress) {
   return planFormFactors(std::make_shared<const PatchMesh>(mesh), options, progress);
@@ -351,7 +359,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   }
   FormFactors result;
   if (prepared.scene && prepared.kernels) {
-    // What is shared by processes cannot be given up by one.
+    // One process alone cannot give up shared work.
     if (processes == nullptr && prepared.options.method == FormFactorMethod::automatic) {
       std::optional<FormFactors> in_time =
           exactInTime(plan, *prepared.scene, *prepared.kernels, progress, journal);

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/rays/ray_factors.h"
+#include "formfactor/rays/ray_model.h"
 #include "formfactor/rays/ray_rounds.h"
 #include "matrix/expected_bytes.h"
 #include "matrix/working_memory.h"
@@ -18,16 +19,6 @@ constexpr std::size_t kMostRows = 160;
 /// second is measured.
 constexpr std::uint32_t kFewRays = kPilotRays;
 constexpr std::uint32_t kManyRays = 8 * kPilotRays;
-/// Bounds of the order that the sample shows: from 160 rows it is still rough.
-constexpr double kLeastForeseenOrder = 1.1;
-constexpr double kMostForeseenOrder = 1.4;
-/// Merging with the other rows' counts takes about half off the square of an error.
-constexpr double kMerged = 0.5;
-/// Allows for rounding rays up to numbers that suit the net, and for the rough errors of a round:
-/// with it, thirteen scenes of the kinds that people have take .6 to 1.5 times the rays foreseen.
-constexpr double kRounding = 1.5;
-/// Seconds for counting, merging and closing an entry of the rows, beside the rays.
-constexpr double kEntrySeconds = 12e-9;
 
 struct SampledRow {
   RowAccuracy few;
@@ -98,11 +89,8 @@ double orderOf(const std::vector<SampledRow>& rows) {
                     kLeastForeseenOrder, kMostForeseenOrder);
 }
 
-/// Beyond kManyRays, entries grow at most with this power of the rays: few new ones are found.
-constexpr double kNewEntries = 0.3;
-
-/// Entries of a row by `rays` rays a replicate. They grow as from few to many rays, beyond that as
-/// above, and at most to all visible ones.
+/// Entries of a row by `rays` rays a replicate. They grow as from few to many rays, beyond that at
+/// most as by kNewEntries, and at most to all visible ones.
 double entriesBy(const SampledRow& row, double rays) {
   if (!(row.few_entries > 0)) return 0;
   double power = std::log(row.entries / row.few_entries) / std::log(double(kManyRays) / kFewRays);
@@ -129,13 +117,13 @@ class Forecast {
   double rays(double loosened) const {
     double sum = 0;
     for (const SampledRow& row : rows_) sum += raysOf(row, loosened);
-    return kReplicates * kRounding * times_ * sum;
+    return kReplicates * kRaysRoundedUp * times_ * sum;
   }
   /// Entries of all rows together, once they have the rays they get.
   double entries(std::size_t columns) const {
     double sum = 0;
     for (const SampledRow& row : rows_) {
-      sum += std::min(double(columns), entriesBy(row, kRounding * raysOf(row, loosened_)));
+      sum += std::min(double(columns), entriesBy(row, kRaysRoundedUp * raysOf(row, loosened_)));
     }
     return times_ * sum;
   }
@@ -147,7 +135,7 @@ class Forecast {
       casting += raysOf(row, loosened) * row.taken.processor / (kManyRays - kFewRays);
     }
     return taken_.ratio() / double(allowedThreads()) *
-           (kRounding * times_ * casting + kEntrySeconds * entries);
+           (kRaysRoundedUp * times_ * casting + kEntrySeconds * entries);
   }
 
  private:

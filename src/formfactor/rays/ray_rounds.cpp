@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/scratch_rows.h"
+#include "formfactor/rays/ray_model.h"
 #include "formfactor/rays/ray_scene.h"
 #include "formfactor/rays/round_journal.h"
 #include "formfactor/rays/shared_rays.h"
@@ -21,12 +22,6 @@ namespace {
 constexpr double kMostGrowth = 32;
 /// A row that is still short after this many rounds is given up: its error does not fall.
 constexpr int kMostRounds = 24;
-/// Bounds of the order that two rounds show.
-constexpr double kLeastOrder = 0.9;
-constexpr double kMostOrder = 2.5;
-
-/// Rows aim at this share of the tolerance, since errors are known to some per cent only.
-constexpr double kMargin = 0.95;
 
 class Rounds {
  public:
@@ -218,7 +213,7 @@ class Rounds {
   bool matrixIsShort() const {
     bool is_done = loosened_ == 1;
     for (std::size_t k = 0; k < rows_.size() && is_done; ++k) is_done = isGoodEnough(k);
-    return is_done && matrixSquares() > squaresAllowed(kMargin);
+    return is_done && matrixSquares() > squaresAllowed(kAimedShare);
   }
   /// A row's part of the squared error of the matrix, ||dF||^2 = sum_k A_k e_k^2.
   double squareOf(std::size_t k) const { return scene_.area()[k] * now_[k].error * now_[k].error; }
@@ -242,7 +237,7 @@ class Rounds {
   std::vector<std::uint32_t> raysForMatrix() const {
     constexpr double kStep = 0.8;     // of the level
     constexpr double kLowest = 1e-9;  // of the highest level
-    const double allowed = squaresAllowed(kMargin * kMargin);
+    const double allowed = squaresAllowed(kAimedShare * kAimedShare);
     double highest = 0;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (rows_[k].rays > 0) highest = std::max(highest, squareOf(k) / rows_[k].rays);
@@ -310,7 +305,7 @@ class Rounds {
   }
 
   /// The aim of relative errors.
-  double aim() const { return kMargin * aim_.tolerance; }
+  double aim() const { return kAimedShare * aim_.tolerance; }
   bool isGoodEnough(std::size_t k) const { return relativeError(now_[k]) <= aim(); }
 
   void finish() {

@@ -18,12 +18,6 @@ inline constexpr std::uint32_t kPilotRays = 512;
 /// Most rays of a row in each replicate: points then lie as close as 24 bits can tell apart.
 inline constexpr std::uint32_t kMostRays = 1u << 24;
 
-/// Error squared falls as n^-kUsualOrder with the number n of rays, if no better order is known.
-/// (In four dimensions scrambled nets reach n^-5/4 on integrands that jump, as visibility does: He
-/// & Wang, "On the convergence rate of randomized quasi-Monte Carlo for discontinuous functions",
-/// SIAM J. Numer. Anal. 53, 2015.)
-inline constexpr double kUsualOrder = 1.25;
-
 /// The least number of rays a replicate that is 2^k or 3 2^k and at least `rays`.
 std::uint32_t roundedRays(double rays);
 
