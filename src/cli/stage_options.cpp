@@ -195,8 +195,9 @@ void addAreasOption(CLI::App& app, Request& r, const char* group) {
 void addMatrixOptions(CLI::App& app, Request& r) {
   addAreasOption(app, r, "Matrix");
   add(app, "Matrix", "--rows", r.rows, "FILE.csv",
-      "What the rows of a matrix from a file reflect and emit: columns row (from 1) or name (* for "
-      "all others), reflectance, emission (exitance, W/m^2); of several bands reflectance_1, ...");
+      "Reflectance and emission of the rows of a matrix from a file: columns row (from 1) or name "
+      "(* for all others), reflectance, emission (exitance, W/m^2); of several bands "
+      "reflectance_1, ...");
 }
 
 void addTableOptions(CLI::App& app, Request& r) {

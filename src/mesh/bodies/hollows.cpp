@@ -62,7 +62,7 @@ void joinAround(const std::vector<RingCell>& ring, UnionFind& spaces) {
   }
 }
 
-/// What is known of a space from its sides.
+/// The properties of a space, from its sides.
 struct Space {
   Box3 box;
   double volume = 0;  ///< three times that enclosed; below 0: the space is around its sides

@@ -391,7 +391,7 @@ def view_factors_from(mesh: Mesh, points: Any, normals: Any, progress: Progress 
 
     points: (P, 3), metres. normals: (P, 3), of any length but 0, or (3,) for all. Exact, with what is
     in between clipped off; a point may be anywhere, and one on a surface sees what is on the side
-    that its normal points to. What a row lacks of 1 goes to the sky and to backs. The irradiance at
+    that its normal points to. The rest of a row to 1 goes to the sky and to backs. The irradiance at
     the points is view_factors_from(...) @ light.radiosity, W/m^2. The array is written in place: no
     copy.
 

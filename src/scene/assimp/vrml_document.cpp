@@ -198,7 +198,7 @@ class VrmlReader {
                        element.name()));
     }
     const std::string name(word_);
-    // What a collision is found with is not seen.
+    // Geometry for collisions only is not visible.
     pugi::xml_document unseen;
     pugi::xml_node parent = name == "proxy" ? unseen.append_child("proxy") : element;
     next();

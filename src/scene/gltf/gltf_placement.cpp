@@ -89,7 +89,7 @@ bool GltfPlacement::isSkinned(int node) const {
   return file_.model.nodes[std::size_t(node)].skin >= 0;
 }
 
-/// What takes a vertex from the mesh to where each joint of the skin has it.
+/// The matrix that takes a vertex from the mesh to its place at each joint of the skin.
 std::vector<glm::dmat4> GltfPlacement::jointTransforms(int node, const std::string& what) const {
   const tinygltf::Skin& skin =
       file_.at(file_.model.skins, file_.model.nodes[std::size_t(node)].skin, "skin", what);
