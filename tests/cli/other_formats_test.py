@@ -297,7 +297,7 @@ class OtherFormats(CliTest):
                 self.assertEqual([surface["name"], surface["area_m2"]], ["wall/material 0", 1])
                 self.assertIn(": no faces", self.refuse("info", self.put("a.x3d", f"<X3D><Scene>{empty}</Scene></X3D>")))
 
-    def test_x3d_inline(self):
+    def test_x3d_inline_is_read(self):
         self.put("inner.x3d", X3D)
         outer = '<X3D><Scene><Transform translation="5 0 0"><Inline url="inner.x3d"/></Transform></Scene></X3D>'
         surface, _ = self.only_surface("a.x3d", outer)
@@ -309,7 +309,7 @@ class OtherFormats(CliTest):
         self.assertEqual(self.refuse("info", self.put("a.x3d", outer.replace("inner", "gone"))),
                          "radiosity: gone.x3d: no such file; check the name and the folder")
 
-    def test_x3d(self):
+    def test_x3d_is_read(self):
         surface, material = self.only_surface("a.x3d", X3D)
         self.assertEqual([surface["faces"], surface["area_m2"]], [1, 1])
         self.assertEqual([material["reflectance"], material["radiance_W_per_m2_sr"]], ["0.25, 0.5, 0.75", "2, 1, 0"])
@@ -340,18 +340,18 @@ class OtherFormats(CliTest):
             np.testing.assert_array_equal(results["solution/reflectance"], [[1, 0, 1]])
         self.assertNotIn("two-sided", self.run_program("info", "a.ac").out)
 
-    def test_dxf(self):
+    def test_dxf_is_read(self):
         """Up is z in drawings."""
         surface, _ = self.only_surface("a.dxf", DXF)
         self.assertEqual([surface["faces"], surface["area_m2"]], [1, 1])
         self.assertIn("roof", surface["name"])
 
-    def test_fbx(self):
+    def test_fbx_is_read(self):
         surface, material = self.only_surface("a.fbx", FBX, "--default-reflectance", ".3")
         self.assertEqual([surface["name"], surface["area_m2"]], ["wall", 1])
         self.assertEqual(material["reflectance"], "0.3, 0.3, 0.3")
 
-    def test_off(self):
+    def test_off_is_read(self):
         surface, _ = self.only_surface("a.off", OFF)
         self.assertEqual([surface["name"], surface["faces"], surface["area_m2"]], ["a", 2, 1])
         for old, new, line in [

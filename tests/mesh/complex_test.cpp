@@ -39,7 +39,7 @@ bool hasNote(const Built& built, const std::string& text) {
                      [&](const Note& n) { return n.text.find(text) != std::string::npos; });
 }
 
-TEST(Contact, BlockTurnedOnFloor) {
+TEST(Contact, BlockTurnedOnFloorBuriesBothWhereTheyTouch) {
   SceneBuilder b;
   const Index floor = b.surface("floor");
   const Index block = b.surface("block");
@@ -76,7 +76,7 @@ TEST(Contact, FloorInTilesGivesTheSameAsOneFloor) {
   });
 }
 
-TEST(Contact, BlockThroughWall) {
+TEST(Contact, BlockThroughWallBuriesTheWallInIt) {
   SceneBuilder b;
   const Index wall = b.surface("wall");
   const Index block = b.surface("block");
@@ -112,7 +112,7 @@ TEST(Contact, TwoBlocksShareAPartOfAFace) {
   });
 }
 
-TEST(Contact, StackedBlocks) {
+TEST(Contact, StackedBlocksBuryBothWhereTheyTouch) {
   SceneBuilder b;
   const Index floor = b.surface("floor");
   const Index low = b.surface("low");
@@ -131,7 +131,7 @@ TEST(Contact, StackedBlocks) {
   });
 }
 
-TEST(Contact, StackedBlocksOfOneFootprint) {
+TEST(Contact, StackedBlocksOfOneFootprintNeedNoCut) {
   SceneBuilder b;
   const Index low = b.surface("low");
   const Index high = b.surface("high");
@@ -179,7 +179,7 @@ TEST(Contact, AGapStaysAGap) {
   });
 }
 
-TEST(Contact, CylinderOf48SidesOnFloor) {
+TEST(Contact, CylinderOf48SidesOnFloorCutsItsOutline) {
   SceneBuilder b;
   const Index floor = b.surface("floor");
   const Index cylinder = b.surface("cylinder");
@@ -195,7 +195,7 @@ TEST(Contact, CylinderOf48SidesOnFloor) {
   });
 }
 
-TEST(Contact, TiltedWallStandsOnFloor) {
+TEST(Contact, TiltedWallStandsOnFloorAndMakesAnInnerEdge) {
   SceneBuilder b;
   const Index floor = b.surface("floor");
   const Index wall = b.surface("wall");
@@ -209,7 +209,7 @@ TEST(Contact, TiltedWallStandsOnFloor) {
   });
 }
 
-TEST(Contact, SheetsThatCross) {
+TEST(Contact, SheetsThatCrossShareAnInnerEdge) {
   SceneBuilder b;
   const Index level = b.surface("level");
   const Index upright = b.surface("upright");
@@ -222,7 +222,7 @@ TEST(Contact, SheetsThatCross) {
   });
 }
 
-TEST(Contact, InterpenetratingSolids) {
+TEST(Contact, InterpenetratingSolidsLoseWhatIsInTheOther) {
   SceneBuilder b;
   const Index first = b.surface("first");
   const Index second = b.surface("second");
@@ -284,7 +284,7 @@ TEST(Contact, RandomBoxesShowTheSurfaceOfTheirUnion) {
   }
 }
 
-TEST(Contact, ASolidInsideASolidIsGoneAndSaid) {
+TEST(Contact, ASolidInsideASolidIsDroppedAndReported) {
   SceneBuilder b;
   const Index outer = b.surface("outer");
   const Index inner = b.surface("inner");
@@ -358,7 +358,7 @@ TEST(Contact, AChamberInASolidIsSeenFromInside) {
 }
 
 /// Of one surface, as CAD exports it; and a room's furniture is no chamber.
-TEST(Contact, WhatIsHollowIsToldByItsOrientation) {
+TEST(Contact, AnInnerShellTurnedInwardMakesASolidHollow) {
   SceneBuilder hollow;
   const Index oven = hollow.surface("oven");
   hollow.box(oven, {0, 0, 0}, {4, 4, 4});
@@ -538,7 +538,7 @@ TEST(Overlap, EmitterThenSmallerThenName) {
   });
 }
 
-TEST(Repair, TJunctionInTheFile) {
+TEST(Repair, TJunctionInTheFileSplitsTheLongEdge) {
   SceneBuilder b;
   const Index long_side = b.surface("long");
   const Index first = b.surface("first");
@@ -590,7 +590,7 @@ TEST(Repair, ATJunctionInItsSkinDoesNotOpenASolid) {
   });
 }
 
-TEST(Repair, APolygonThatCrossesItselfIsSaid) {
+TEST(Repair, ASelfCrossingPolygonIsReported) {
   SceneBuilder b;
   const Index bow = b.surface("bow");
   // Crosses itself at (4/3, 4/3): triangles of 8/3 and, turned over, 2/3 m^2.
@@ -725,7 +725,7 @@ TEST(Sheets, PlateWithoutThicknessSurvives) {
   });
 }
 
-TEST(Sheets, ThreeWallsAtOneEdge) {
+TEST(Sheets, ThreeWallsAtOneEdgeShareIt) {
   SceneBuilder b;
   const Index wall = b.surface("wall");
   for (int k = 0; k < 3; ++k) {
@@ -781,7 +781,7 @@ bool meet(const Triangle& a, const Triangle& b, const Triangle& c) {
   return holds(a) && holds(b) && holds(c);
 }
 
-TEST(Sheets, SoupOfTrianglesThatCross) {
+TEST(Sheets, SoupOfTrianglesThatCrossIsCutAtEachCrossing) {
   SceneBuilder b;
   const Index soup = b.surface("soup");
   std::mt19937 random(7);

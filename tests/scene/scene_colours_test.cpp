@@ -135,7 +135,7 @@ TEST_F(SceneColours, OutsideTheRangeAreRefused) {
   EXPECT_CONTAINS(errorOf("a.dae", collada), "a colour of vertex 0 is outside 0 to 1; scale it");
 }
 
-TEST_F(SceneColours, ThatAreNotThereAreNoted) {
+TEST_F(SceneColours, MissingOnesAreNoted) {
   const Scene scene = load("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", VertexColours::srgb);
   EXPECT_NOTE(scene.notes, "--vertex-colours: no vertex has a colour", Severity::warning);
   EXPECT_EQ(scene.materials[0].reflectance, Vec3(0.5));

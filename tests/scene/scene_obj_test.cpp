@@ -112,7 +112,7 @@ TEST_F(SceneObj, SurfaceNamesAreUniqueEvenWithSlashes) {
   EXPECT_NE(scene.surfaces[0].name, scene.surfaces[1].name);
 }
 
-TEST_F(SceneObj, RefusesWhatIsNoNumber) {
+TEST_F(SceneObj, RefusesWordsWhereNumbersAreDue) {
   const std::array<std::string, 9> words = {"nan", "inf",  "1,5", "1e999", "0x10",
                                             "one", "1.5f", "--1", "1e"};
   for (const std::string& word : words) {
@@ -159,7 +159,7 @@ TEST_F(SceneObj, ReadsLinesThatEndAsOnOldMacs) {
   EXPECT_EQ(load(text).faceCount(), 2u);
 }
 
-TEST_F(SceneObj, TakesWhatStandsEmptyBehindSlashesAsLeftOut) {
+TEST_F(SceneObj, EmptyIndicesAfterSlashesCountAsMissing) {
   const Scene scene =
       load(kSquare + "vt 0 0\nvn 0 0 1\nf 1/ 2/ 3/\nf 1// 2// 3//\nf 1/1/ 3/1/ 4//1\n");
   EXPECT_EQ(scene.faceCount(), 3u);
@@ -233,7 +233,7 @@ TEST_F(SceneObj, TurnsRadianceIntoExitance) {
   EXPECT_FALSE(lamp.two_sided);
 }
 
-TEST_F(SceneObj, WhatIsNotUsedMayBeNoNumber) {
+TEST_F(SceneObj, UnusedValuesNeedNotBeNumbers) {
   const Scene scene = load(kSquare + "o wall\nvn nan -nan(ind) 0\nvt nan 0\nf 1/1/1 2/1/1 3/1/1\n");
   EXPECT_EQ(scene.faceCount(), 1U);
   EXPECT_TRUE(scene.texcoords.empty());
@@ -243,7 +243,7 @@ TEST_F(SceneObj, WhatIsNotUsedMayBeNoNumber) {
               Severity::warning);
 }
 
-TEST_F(SceneObj, ColoursOfVerticesAreSaid) {
+TEST_F(SceneObj, UnusedVertexColoursAreReported) {
   const Scene scene = load("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nf 1 2 3\n");
   EXPECT_NOTE(scene.notes, "colours of vertices are not used", Severity::info);
 }
@@ -329,7 +329,7 @@ TEST_F(SceneObj, ReportsInheritedMaterials) {
   EXPECT_EQ(findNote(meant.notes, "no usemtl of their own"), nullptr) << allNotes(meant.notes);
 }
 
-TEST_F(SceneObj, NamesWhatADiffuseMaterialLeavesOut) {
+TEST_F(SceneObj, NamesMaterialPropertiesThatAreNotDiffuse) {
   write("m.mtl",
         "newmtl glass\nKd .1 .1 .1\nKs .5 .5 .5\nd 0.2\nNi 1.5\nillum 7\nmap_Bump b.png\n"
         "newmtl steel\nKd .5 .5 .5\nPm 1\nKs 0 0 0\nd 1\nmap_Ke e.png\nblurb 3\n"
