@@ -8,6 +8,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "base/geometry/containment.h"
 #include "base/geometry/segment.h"
 #include "base/parallel.h"
 #include "mesh/arrangement/edge_rows.h"
@@ -16,8 +17,6 @@
 namespace radiosity {
 
 namespace {
-
-enum class Place { outside, border, inside };
 
 constexpr std::size_t kPairsAtATime = 256;  // of sheets, for each task of a thread
 // For sheets with more edges than this we search by rows.
@@ -60,7 +59,7 @@ class ContactFinder {
   std::span<const Index> edgesBeside(Index sheet, const Box3& box, std::vector<Index>& some) const;
   Sides sidesOf(Index sheet, const Plane& plane) const;
   void addTraces(Index sheet, Index other, std::vector<Vec3>& points) const;
-  Place place(const Vec3& p, Index sheet) const;
+  Containment place(const Vec3& p, Index sheet) const;
   std::span<const Index> edgesAt(Index sheet, const Vec2& q) const;
   InputFaces& input_;
   const std::vector<Plane>& planes_;
@@ -153,23 +152,23 @@ void ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& poin
 
 /// The place of a point relative to a sheet: even-odd in the plane's image. Points closer than
 /// coincidence to an edge are on the border.
-Place ContactFinder::place(const Vec3& p, Index number) const {
+Containment ContactFinder::place(const Vec3& p, Index number) const {
   const Sheet& sheet = sheets_[number];
-  if (!sheet.box.grown(input_.coincidence).contains(p)) return Place::outside;
+  if (!sheet.box.grown(input_.coincidence).contains(p)) return Containment::outside;
   const PlaneImage frame(planes_[sheet.plane].normal);
   const Vec2 q = frame(p);
   bool inside = false;
   for (const Index k : edgesAt(number, q)) {
     const Vec3& a3 = input_.points[sheet.edges[k][0]];
     const Vec3& b3 = input_.points[sheet.edges[k][1]];
-    if (distanceToSegment(p, a3, b3) <= input_.coincidence) return Place::border;
+    if (distanceToSegment(p, a3, b3) <= input_.coincidence) return Containment::on;
     const Vec2 a = frame(a3);
     const Vec2 b = frame(b3);
     if ((a.y > q.y) != (b.y > q.y) && q.x < a.x + (b.x - a.x) * ((q.y - a.y) / (b.y - a.y))) {
       inside = !inside;
     }
   }
-  return inside ? Place::inside : Place::outside;
+  return inside ? Containment::inside : Containment::outside;
 }
 
 void ContactFinder::add(const Contact& contact) {
@@ -199,11 +198,11 @@ void ContactFinder::pair(Index f, Index g, std::vector<Contact>& out) const {
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     if (points[k] == points[k + 1]) continue;
     const Vec3 middle = 0.5 * (points[k] + points[k + 1]);
-    const Place in_f = place(middle, f);
-    const Place in_g = in_f == Place::outside ? Place::outside : place(middle, g);
-    if (in_g == Place::outside) continue;
-    if (in_f == Place::inside) out.push_back({points[k], points[k + 1], sheets_[f].plane});
-    if (in_g == Place::inside) out.push_back({points[k], points[k + 1], sheets_[g].plane});
+    const Containment in_f = place(middle, f);
+    const Containment in_g = in_f == Containment::outside ? Containment::outside : place(middle, g);
+    if (in_g == Containment::outside) continue;
+    if (in_f == Containment::inside) out.push_back({points[k], points[k + 1], sheets_[f].plane});
+    if (in_g == Containment::inside) out.push_back({points[k], points[k + 1], sheets_[g].plane});
   }
 }
 

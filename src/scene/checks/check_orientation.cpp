@@ -39,27 +39,27 @@ std::vector<WindingTree::Triangle> trianglesOf(const WeldedFaces& faces,
 
 /// The place of a point, given relative to the centre of the welded faces. `on`: so close to the
 /// part's faces that neither side is certain.
-Place SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) const {
+Containment SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) const {
   auto tree = winding_.find(&outer);
   if (tree == winding_.end()) {
     tree = winding_.emplace(&outer, WindingTree(trianglesOf(faces_, outer))).first;
   }
   const double winding = std::abs(tree->second.around(point));
-  if (winding >= 0.75) return Place::inside;
-  return winding > 0.25 ? Place::on : Place::outside;
+  if (winding >= 0.75) return Containment::inside;
+  return winding > 0.25 ? Containment::on : Containment::outside;
 }
 
 /// The place of a part. `on`: every face of `inner` lies on `outer` (a lamp panel on a ceiling).
 /// Faces in contact do not count if there are others (a block on a floor).
-Place SceneChecks::placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const {
-  if (!boxContains(outer, inner, faces_.tolerance)) return Place::outside;
+Containment SceneChecks::placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const {
+  if (!boxContains(outer, inner, faces_.tolerance)) return Containment::outside;
   for (const Index f : inner.faces) {
     Vec3 middle{0.0};
     for (const Index corner : faces_.face(f)) middle += faces_.points[corner];
-    const Place place = placeOf(middle / double(faces_.face(f).size()), outer);
-    if (place != Place::on) return place;
+    const Containment place = placeOf(middle / double(faces_.face(f).size()), outer);
+    if (place != Containment::on) return place;
   }
-  return Place::on;
+  return Containment::on;
 }
 
 bool SceneChecks::closed() const { return topology_.closed || enclosed(); }
@@ -77,7 +77,7 @@ bool SceneChecks::enclosed() const {
     // If many bodies are inside out, we only examine one that extends as far as all of them.
     return room.closed && room.volume < 0 && room.lower == lower && room.upper == upper &&
            std::all_of(parts.begin(), parts.end(), [&](const ConnectedPart& part) {
-             return &part == &room || placeOf(part, room) != Place::outside;
+             return &part == &room || placeOf(part, room) != Containment::outside;
            });
   });
 }
@@ -135,7 +135,7 @@ std::vector<const ConnectedPart*> SceneChecks::cavitiesOf(const ConnectedPart& s
   if (!(solid.volume > 0)) return cavities;
   for (const std::size_t k : partsNear(solid)) {
     const ConnectedPart& part = topology_.parts[k];
-    if (part.closed && part.volume < 0 && placeOf(part, solid) == Place::inside) {
+    if (part.closed && part.volume < 0 && placeOf(part, solid) == Containment::inside) {
       cavities.push_back(&part);
     }
   }
@@ -146,7 +146,7 @@ bool SceneChecks::isCavity(const ConnectedPart& part) const {
   const std::vector<std::size_t> near = partsNear(part);
   return std::any_of(near.begin(), near.end(), [&](std::size_t k) {
     const ConnectedPart& solid = topology_.parts[k];
-    return solid.closed && solid.volume > 0 && placeOf(part, solid) == Place::inside;
+    return solid.closed && solid.volume > 0 && placeOf(part, solid) == Containment::inside;
   });
 }
 
@@ -162,10 +162,10 @@ std::vector<std::string> SceneChecks::contentsOf(const ConnectedPart& outer,
     if (contents.size() >= most) break;
     const std::vector<std::string> surfaces = surfacesOf(part);
     const bool adds = !std::all_of(surfaces.begin(), surfaces.end(), is_known);
-    if (!adds || &part == &outer || placeOf(part, outer) != Place::inside) continue;
+    if (!adds || &part == &outer || placeOf(part, outer) != Containment::inside) continue;
     const bool is_in_cavity =
         std::any_of(cavities.begin(), cavities.end(), [&](const ConnectedPart* cavity) {
-          return &part == cavity || placeOf(part, *cavity) != Place::outside;
+          return &part == cavity || placeOf(part, *cavity) != Containment::outside;
         });
     if (is_in_cavity) continue;
     std::copy_if(surfaces.begin(), surfaces.end(), std::back_inserter(contents),
@@ -184,9 +184,9 @@ void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
   bool camera_inside = false;
   for (const Camera& camera : scene_.cameras) {
     const Vec3 eye = camera.eye - faces_.centre;
-    camera_inside |= placeOf(eye, part) == Place::inside &&
+    camera_inside |= placeOf(eye, part) == Containment::inside &&
                      std::none_of(cavities.begin(), cavities.end(), [&](const ConnectedPart* in) {
-                       return placeOf(eye, *in) == Place::inside;
+                       return placeOf(eye, *in) == Containment::inside;
                      });
   }
   const bool emits_inwards =

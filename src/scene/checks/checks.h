@@ -8,15 +8,13 @@
 #include <vector>
 
 #include "base/geometry/box_tree.h"
+#include "base/geometry/containment.h"
 #include "radiosity/scene.h"
 #include "scene/checks/overlaps.h"
 #include "scene/checks/topology.h"
 #include "scene/checks/winding_tree.h"
 
 namespace radiosity {
-
-/// A place with respect to a closed part.
-enum class Place { inside, on, outside };
 
 /// Names materials that return all light, by reflectance alone; none: nothing.
 std::optional<Note> whiteMaterials(const Scene& scene);
@@ -53,8 +51,8 @@ class SceneChecks {
   std::vector<std::string> surfacesOf(const ConnectedPart& part) const;
   /// Their names: "a/b, c/d".
   std::string namesOf(const ConnectedPart& part) const;
-  Place placeOf(const Vec3& point, const ConnectedPart& outer) const;
-  Place placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
+  Containment placeOf(const Vec3& point, const ConnectedPart& outer) const;
+  Containment placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
   /// The parts whose boxes meet that of `part`, ascending.
   std::vector<std::size_t> partsNear(const ConnectedPart& part) const;
   /// The closed parts turned inward within a solid, which make it hollow.
