@@ -39,32 +39,7 @@ namespace radiosity {
 /// error scatters like that row's. (In a cube in a cube, 204 patches, at 1e-4, errors of rows
 /// reach 1.8 times those of the drawn rows.)
 ///
-/// Measured at tolerances from 1e-1 to 1e-5 against rows of truth that are good to 1e-6 of the mean
-/// form factor, in scenes that no constant was fitted to (tools/bench --only figures):
-///
-///     scene                       rows   below their figure   median of figure / error   worst
-///     closed Cornell box, 111      111    99.1 to 100%             6.2 to 20             1.1
-///     closed Cornell box, 392      392    99.2 to 100%             6.2 to 11             2.0
-///     closed Cornell box, 606      606    99.3 to 99.7%            5.9 to 11             2.6
-///     closed Cornell box, 791      791    99.7 to 100%             6.2 to 10             2.2
-///     two rooms, 484               484     100%                    8.0 to 11             0.6
-///     boxes that touch, 407        407    99.5 to 100%             4.5 to 8.4            1.1
-///     posts around a block, 398    398     100%; 95% at 1e-5       4.1 to 7.2            1.5
-///     cube in a cube, 204          204     100%; 97% at 1e-4       5.0 to 9.9            1.0
-///     cube in a cube, 480          480     100%                    7.3 to 14             0.7
-///     tight cube in a cube, 432    432     100%                     19 and more          0.6
-///     blades 1 : 40 to 1 : 400     387    98.7 to 100%             5.6 to 13             2.5
-///
-/// (worst: the largest error over its figure.) 99.8% of all these rows, and of 480 of the cube in a
-/// cube when it is turned; in 68 of the 72 runs 99% or more. The other four: of the posts, 16 of 18
-/// rows are those of one pair and its seven mirror images; in the cube, all rows are alike, and six
-/// exceed their figures by less than 1%; of the blades at 1e-2 (98.97%), four rows are two and
-/// their images, at 1e-5 (98.7%) five rows have a pair each that is off. Figures mostly miss
-/// neighbouring targets of one element past which the same edge of a shadow slips unseen:
-/// SampledPair::change goes by another edge of that occluder, which is nearer. These pairs are so
-/// few that none is evaluated again. If a pair that hardly any row has is evaluated again, figures
-/// are far above errors (the 20). (truth_exact_test holds three meshes to it, against truth that
-/// shares no code.)
+/// Measured rows and exceptions: src/formfactor/README.md, "Error figures"; truth_exact_test.
 class ErrorSums {
  public:
   ErrorSums() = default;

@@ -65,8 +65,7 @@ inline constexpr std::size_t kSampleSteps = 96;
 /// Some rows in up to kSampleSteps places, of large facets and of small ones, against later facets
 /// of many elements or of few: all of these, or every n-th if there are very many. The work has a
 /// bound, in tests and pairs and not by the clock, so that the counts come out the same in every
-/// run. (0.05 to 0.8 s on two threads of a 2.7 GHz Xeon, from a spotted cow to a couch among
-/// cushions.) Steps `progress`; calls its check().
+/// run. Steps `progress`; calls its check().
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress);
 /// The same of the rows of the first tasks alone.
 RowSample sampleRows(const ExactScene& scene, std::size_t tasks, double tolerance,

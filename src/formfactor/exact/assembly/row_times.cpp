@@ -12,10 +12,8 @@ namespace radiosity {
 namespace {
 
 /// Pairs are clipped to time their work, in up to kRounds rounds, until kClipShare of all foreseen
-/// work is done, but for no less than kLeastClipSeconds and no more than kMostClipSeconds. (At 1e-6
-/// a single pair past round bodies takes tenths of a second. A few pairs, near to each other, carry
-/// half of the time or more: in gazebo.obj of the lightmapper's examples one pair in 300 takes 38%.
-/// Many short batches meet them.)
+/// work is done, but for no less than kLeastClipSeconds and no more than kMostClipSeconds. Few
+/// pairs, near to each other, may carry half of the time. Many short batches meet them.
 constexpr std::size_t kRounds = 16;
 constexpr double kClipShare = 0.02;
 constexpr double kLeastClipSeconds = 0.25;

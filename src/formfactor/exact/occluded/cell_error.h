@@ -55,14 +55,7 @@ struct CellError {
 /// slipped between the points; or all points see the edge of the one shadow there is well inside
 /// the target, and it hardly moves.
 ///
-/// The constants (error_model.h) are fitted to errors against values converged to 1e-6 of the mean
-/// form factor and better: those of the cautious estimate on the closed Cornell box with 985
-/// patches and a tenth of the curved scene's rows; those of the stated one on both, another
-/// twentieth of the curved scene's rows, the box with 258 and 5,096 patches, a cluttered scene and
-/// two rooms, from 1e-1 to 1e-5: for every kind of cell that carries much of the error, stated and
-/// found errors agree to within a factor of 1.5 in most scenes, of 2 in all. Held against the
-/// box with 20,234 patches and a furnished room, which took no part in that.
-/// tests/bench/error_model.py fits them anew.
+/// The constants (error_model.h) are refitted and scored by tests/bench/error_model.py.
 CellError meanError(const CellValues& values);
 
 /// Better estimates than the `guessed` ones, once the points near the corners were looked from:
