@@ -13,6 +13,7 @@ namespace radiosity {
 namespace {
 
 /// A cell at an edge, with the spaces on its sides of larger and of smaller angles about the edge.
+/// (RingCell of hollows.cpp has the angle, too, since any number of cells may be at an edge there.)
 struct Wing {
   Index after;
   Index before;
