@@ -283,10 +283,10 @@ FormFactors computeFormFactors(const PatchMesh& mesh, const FormFactorOptions& o
 /// The same from a plan of planFormFactors(), any number of times. `journal`: keeps rows, and
 /// returns rows of an earlier run of the same; none: rows are not kept. The bits are the same
 /// either way. Exact form factors that `automatic` chose are given up, and rays take their place,
-/// if they take far longer than the plan says; the report notes it. `processes`: they share the
-/// work and, after that, the matrix; the others run shareFormFactors()
-/// (src/formfactor/shared_factors.h) meanwhile. Errors: also InputError if the method cannot be
-/// shared.
+/// if they take far longer than the plan says; the report notes it. `processes`: internal, for the
+/// program under mpirun (base/processes.h is not installed). They share the work and, after that,
+/// the matrix; the others run shareFormFactors() (src/formfactor/shared_factors.h) meanwhile.
+/// Errors: also InputError if the method cannot be shared.
 FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress,
                                RowJournal* journal = nullptr, Processes* processes = nullptr);
 

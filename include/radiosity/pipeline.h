@@ -27,8 +27,9 @@ namespace [[gnu::visibility("default")]] radiosity {
 
 class JournalFile;
 class Pipeline;
-class Processes;
 class StageKey;
+// Internal: for the program under mpirun (base/processes.h is not installed).
+class Processes;
 enum class SharedTask : std::uint32_t;
 
 enum class Stage { mesh, form_factors, solution, gather, elements, heat, basis };

@@ -22,6 +22,35 @@ double parseReflectance(const std::string& text) {
   return *value;
 }
 
+/// Options that also apply to the scene in a results file.
+void addOverrideOptions(CLI::App& app, Request& r) {
+  add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
+      "Override a surface, material or object: reflectance (0 to 1), emission (exitance, W/m^2) "
+      "or radiance (W/m^2/sr), which replace a texture, or tint, which keeps it and multiplies; "
+      "one "
+      "number or three (R,G,B). May be repeated");
+  app.add_option_function<std::string>(
+         "--sky", [&r](const std::string& text) { r.scene.sky = parseSky(text); },
+         "Light an open scene from every direction in which nothing stands, also from below: "
+         "radiance, W/m^2/sr; one number or R,G,B (default 0). Pictures show it, opaque, where "
+         "nothing is hit")
+      ->group("Scene")
+      ->option_text("RADIANCE");
+  app.add_option_function<std::string>(
+         "--up", [&r](const std::string& text) { r.scene.up = named(kUpNames, text); },
+         "Axis that points up, for cameras that nobody gave: y or z (default: z in .stl, .3mf, "
+         ".msh, .inp, .vs3 and VTK's files, else y)")
+      ->check(CLI::IsMember(namesIn(kUpNames)))
+      ->group("Scene")
+      ->option_text("y|z");
+  add(app, "Scene", "--materials", r.scene.materials_file, "FILE.json",
+      R"(Overrides from a file: {"NAME": {"reflectance": [R,G,B], "emission": [R,G,B]}})");
+  add(app, "Scene", "--one-sided", r.scene.one_sided, "NAME|all",
+      "Make surfaces one-sided: black from behind, but they block. May be repeated");
+  add(app, "Scene", "--two-sided", r.scene.two_sided, "NAME|all",
+      "Make surfaces two-sided (applied after --one-sided). May be repeated");
+}
+
 }  // namespace
 
 void addSceneOptions(CLI::App& app, Request& r) {
@@ -66,31 +95,7 @@ void addSceneOptions(CLI::App& app, Request& r) {
       "--textures", [&r](const std::string& t) { r.scene.textures = t == "on"; }, "on|off",
       "Average textures over each patch (on, default) or use the material's factor alone")
       ->check(CLI::IsMember({"on", "off"}));
-  add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
-      "Override a surface, material or object: reflectance (0 to 1), emission (exitance, W/m^2) "
-      "or radiance (W/m^2/sr), which replace a texture, or tint, which keeps it and multiplies; "
-      "one "
-      "number or three (R,G,B). May be repeated");
-  app.add_option_function<std::string>(
-         "--sky", [&r](const std::string& text) { r.scene.sky = parseSky(text); },
-         "Light an open scene from every direction in which nothing stands, also from below: "
-         "radiance, W/m^2/sr; one number or R,G,B (default 0). Pictures show it, opaque, where "
-         "nothing is hit")
-      ->group("Scene")
-      ->option_text("RADIANCE");
-  app.add_option_function<std::string>(
-         "--up", [&r](const std::string& text) { r.scene.up = named(kUpNames, text); },
-         "Axis that points up, for cameras that nobody gave: y or z (default: z in .stl, .3mf, "
-         ".msh, .inp, .vs3 and VTK's files, else y)")
-      ->check(CLI::IsMember(namesIn(kUpNames)))
-      ->group("Scene")
-      ->option_text("y|z");
-  add(app, "Scene", "--materials", r.scene.materials_file, "FILE.json",
-      R"(Overrides from a file: {"NAME": {"reflectance": [R,G,B], "emission": [R,G,B]}})");
-  add(app, "Scene", "--one-sided", r.scene.one_sided, "NAME|all",
-      "Make surfaces one-sided: black from behind, but they block. May be repeated");
-  add(app, "Scene", "--two-sided", r.scene.two_sided, "NAME|all",
-      "Make surfaces two-sided (applied after --one-sided). May be repeated");
+  addOverrideOptions(app, r);
 }
 
 void addMeshOptions(CLI::App& app, Request& r) {
