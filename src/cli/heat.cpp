@@ -42,11 +42,11 @@ void noteLightOptions(Session& session, bool materials_are_used) {
   if (!materials_are_used) {
     if (!scene.set.empty()) unused.emplace_back("--set");
     if (!scene.materials_file.empty()) unused.emplace_back("--materials");
-    for (const std::string& name : session.request.reading_options) {
-      if (name != "--unit") unused.push_back(name);
-    }
   }
   if (scene.sky) unused.emplace_back("--sky (heat has --sky-temperature)");
+  for (const std::string& name : session.request.reading_options) {
+    if (name != "--unit" && !materials_are_used) unused.push_back(name);
+  }
   if (unused.empty()) return;
   const Note note{Severity::warning,
                   fmt::format("about light, not used by heat: {}", fmt::join(unused, ", "))};

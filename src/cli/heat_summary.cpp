@@ -130,9 +130,10 @@ void warnings(Report& report, const HeatSummary& s, double given_off,
   if (s.undetermined > 0) {
     notes.push_back(
         {Severity::warning,
-         fmt::format("{} no temperature: emissivity 0 and no convection, so any would do",
-                     s.undetermined == 1 ? "1 unknown has"
-                                         : fmt::format("{} unknowns have", s.undetermined))});
+         fmt::format(
+             "{} no temperature: emissivity 0 and no convection, or no area, so any would do",
+             s.undetermined == 1 ? "1 unknown has"
+                                 : fmt::format("{} unknowns have", s.undetermined))});
   }
   report.notes(notes);
 }

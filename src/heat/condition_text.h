@@ -24,6 +24,12 @@ struct GivenCondition {
   std::optional<bool> isothermal;
 
   bool heated() const { return temperature || flux || power; }
+  /// Whether both give the same one of temperature, flux and power.
+  bool heatedAs(const GivenCondition& other) const {
+    return temperature.has_value() == other.temperature.has_value() &&
+           flux.has_value() == other.flux.has_value() &&
+           power.has_value() == other.power.has_value();
+  }
   bool givesEmissivity() const { return emissivity || emissivity_of_material; }
 };
 

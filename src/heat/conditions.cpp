@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace radiosity {
 
@@ -69,13 +70,32 @@ void checkCondition(const HeatCondition& c, int bands) {
 
 }  // namespace
 
+namespace {
+
+/// The number of the first temperature of the table above `temperature`; none if it is beyond.
+std::optional<std::size_t> firstAbove(const Emissivity& e, double temperature) {
+  if (e.temperatures.empty() || temperature < e.temperatures.front()) return std::nullopt;
+  const auto above = std::upper_bound(e.temperatures.begin(), e.temperatures.end(), temperature);
+  if (above == e.temperatures.end()) return std::nullopt;
+  return std::size_t(above - e.temperatures.begin());
+}
+
+}  // namespace
+
 double Emissivity::at(double temperature) const {
-  if (temperatures.empty() || !(temperature > temperatures.front())) return values.front();
-  const auto above = std::upper_bound(temperatures.begin(), temperatures.end(), temperature);
-  if (above == temperatures.end()) return values.back();
-  const auto k = std::size_t(above - temperatures.begin());
-  const double part = (temperature - temperatures[k - 1]) / (temperatures[k] - temperatures[k - 1]);
-  return std::lerp(values[k - 1], values[k], part);
+  const std::optional<std::size_t> k = firstAbove(*this, temperature);
+  if (!k) {
+    const bool below = temperatures.empty() || temperature < temperatures.front();
+    return below ? values.front() : values.back();
+  }
+  const double width = temperatures[*k] - temperatures[*k - 1];
+  return std::lerp(values[*k - 1], values[*k], (temperature - temperatures[*k - 1]) / width);
+}
+
+double slopeOf(const Emissivity& e, double temperature) {
+  const std::optional<std::size_t> k = firstAbove(e, temperature);
+  if (!k) return 0;
+  return (e.values[*k] - e.values[*k - 1]) / (e.temperatures[*k] - e.temperatures[*k - 1]);
 }
 
 int HeatBands::count() const {

@@ -26,4 +26,7 @@ inline const Emissivity& emissivityIn(const HeatCondition& condition, std::size_
   return condition.emissivity[condition.emissivity.size() == 1 ? 0 : band];
 }
 
+/// Its derivative, 1/K: 0 for a constant and beyond the table.
+double slopeOf(const Emissivity& emissivity, double temperature);
+
 }  // namespace radiosity

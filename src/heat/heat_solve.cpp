@@ -21,6 +21,10 @@ constexpr double kRounding = 1e-14;
 /// If the equations are not linear in x = sigma T^4, a step keeps at least this share of x, so that
 /// T falls to a quarter at most.
 constexpr double kLargestFall = 1.0 / 256;
+/// Where emissivity rises with temperature faster than emission, more heat is absorbed in a hotter
+/// node. There, and where less than this share of the slope is left, a step takes the emissivity as
+/// constant.
+constexpr double kLeastSlope = 0.1;
 
 double largest(const std::vector<double>& values) {
   double most = 0;
@@ -143,8 +147,12 @@ void HeatSolve::start() {
   for (const HeatNode& node : nodes_.nodes) {
     if (node.area > 0) from = std::max(from, node.supplied / node.area);
   }
+  cold_ = !(from > 0) && std::ranges::none_of(
+                             nodes_.nodes, [](const HeatNode& node) { return node.supplied != 0; });
   if (!(from > 0)) from = 1;  // any positive value will do
   x_.assign(nodes_.nodes.size(), isLinear() ? 0 : from);
+  last_step_.assign(x_.size(), 0.0);
+  longest_step_.assign(x_.size(), std::numeric_limits<double>::infinity());
   place();
 }
 
@@ -233,7 +241,7 @@ double HeatSolve::heatWithoutLight(std::size_t n) const {
   return heat;
 }
 
-HeatSystem HeatSolve::system() {
+HeatSystem HeatSolve::system(const std::vector<double>& irradiance) {
   HeatSystem s;
   s.bands = int(width_);
   s.source = emitted_;
@@ -249,30 +257,67 @@ HeatSystem HeatSolve::system() {
   }
   gain_.assign(s.nodes, 0.0);
   lack_.assign(s.nodes, 0.0);
-  for (std::size_t n = 0; n < s.nodes; ++n) linearize(n, s);
+  for (std::size_t n = 0; n < s.nodes; ++n) linearize(n, irradiance, s);
   return s;
 }
 
+/// The derivatives of J by x for each row and band of the node, irradiance unchanged.
+std::vector<double> HeatSolve::emissionSlopes(std::size_t n,
+                                              const std::vector<double>& irradiance) const {
+  const HeatNode& node = nodes_.nodes[n];
+  const HeatCondition& condition = rows_.conditions[node.condition];
+  const double temperature = temperature_[node.rows.front()];
+  std::vector<double> constant;
+  std::vector<double> slopes;
+  double left = 0;
+  for (const Index i : node.rows) {
+    for (std::size_t b = 0; b < width_; ++b) {
+      const std::size_t k = i * width_ + b;
+      constant.push_back(emissivity_[k] * black_.slope(int(b), temperature));
+      slopes.push_back(constant.back());
+      const double rise = slopeOf(emissivityIn(condition, b), temperature);
+      if (rise != 0 && !irradiance.empty()) {
+        const double black = black_.total(temperature) * black_.fraction(int(b), temperature);
+        slopes.back() += rise * temperature / (4 * x_[n]) * (black - irradiance[k]);
+      }
+      left += area_[i] * (slopes.back() - kLeastSlope * constant.back());
+    }
+  }
+  return left > 0 ? slopes : constant;
+}
+
 /// Linearises the node's part of the system around its temperature.
-void HeatSolve::linearize(std::size_t n, HeatSystem& s) {
+void HeatSolve::linearize(std::size_t n, const std::vector<double>& irradiance, HeatSystem& s) {
   const HeatNode& node = nodes_.nodes[n];
   const double convection = rows_.conditions[node.condition].convection;
   const double temperature = temperature_[node.rows.front()];
-  std::vector<double> slope(width_);
-  for (std::size_t b = 0; b < width_; ++b) slope[b] = black_.slope(int(b), temperature);
+  const std::vector<double> slopes = emissionSlopes(n, irradiance);
+  std::size_t part = 0;
   for (const Index i : node.rows) {
-    for (std::size_t b = 0; b < width_; ++b) gain_[n] += s.absorbs[i * width_ + b] * slope[b];
+    for (std::size_t b = 0; b < width_; ++b) gain_[n] += area_[i] * slopes[part++];
   }
   if (convection > 0) gain_[n] += convection * node.area * temperature / (4 * x_[n]);
   if (!(gain_[n] > 0)) return;
   lack_[n] = heatWithoutLight(n);
+  part = 0;
   for (const Index i : node.rows) {
     for (std::size_t b = 0; b < width_; ++b) {
       const std::size_t k = i * width_ + b;
-      s.emits[k] = emissivity_[k] * slope[b] / gain_[n];
+      s.emits[k] = slopes[part++] / gain_[n];
       s.source[k] += s.emits[k] * lack_[n];
     }
   }
+}
+
+/// The step of a node in x. One that turns back at a corner of its table is at most half as long as
+/// the step before, and so are all that follow.
+double HeatSolve::limited(std::size_t n, double step) {
+  if (!hasTable(rows_.conditions[nodes_.nodes[n].condition])) return step;
+  if (step * last_step_[n] < 0) {
+    longest_step_[n] = std::min(longest_step_[n], std::abs(last_step_[n]) / 2);
+  }
+  last_step_[n] = std::clamp(step, -longest_step_[n], longest_step_[n]);
+  return last_step_[n];
 }
 
 /// Computes temperatures from the irradiance of their nodes. Errors: InputError if more heat is
@@ -288,23 +333,28 @@ void HeatSolve::step(const HeatSystem& s, const HeatFields& fields) {
         heat += s.absorbs[i * width_ + b] * fields.irradiance[i * width_ + b];
       }
     }
-    const double next = x_[n] + heat / gain_[n];
+    const double next = cold_ ? 0 : x_[n] + limited(n, heat / gain_[n]);
     const double floor = linear ? 0 : x_[n] * kLargestFall;
     const double off = linear ? -next : floor - next;
     const double nothing = linear ? options_.tolerance * scale : 0;
     const bool frozen = linear || x_[n] < std::min(1e-12, 1e-3 * options_.tolerance) * scale;
-    if (frozen && off > nothing) refuseCold(n);
-    x_[n] = std::max(next, floor);
+    if (!cold_ && frozen && off > nothing) refuseCold(n);
+    x_[n] = cold_ ? 0 : std::max(next, floor);
   }
   place();
 }
 
+/// The node at 0 K is n. The heat may be taken out elsewhere: the node that gives most is named.
 void HeatSolve::refuseCold(std::size_t n) const {
-  const HeatNode& node = nodes_.nodes[n];
+  const auto fluxOf = [](const HeatNode& node) {
+    return node.area > 0 ? node.supplied / node.area : 0.0;
+  };
+  const HeatNode& most = *std::ranges::min_element(nodes_.nodes, {}, fluxOf);
+  const HeatNode& node = fluxOf(most) < 0 ? most : nodes_.nodes[n];
   throw InputError(fmt::format(
       "{}: more heat is taken out of it ({:g} W/m^2) than it could take up at 0 K, so it has no "
       "temperature; take out less",
-      rows_.conditions[node.condition].name, -node.supplied / node.area));
+      rows_.conditions[node.condition].name, -fluxOf(node)));
 }
 
 /// The true residuals: H is multiplied anew. Values that are not finite give infinity.
@@ -344,10 +394,11 @@ HeatSolution HeatSolve::run() {
   int iterations = 0;
   const double tolerance = std::max(kRounding, kLinearShare * options_.tolerance);
   do {
-    const HeatSystem s = system();
+    const HeatSystem s = system(fields.irradiance);
     fields = solveHeatSystem(factors_.matrix, s, fields.irradiance, tolerance, progress_);
     products += fields.products;
     step(s, fields);
+    if (cold_) std::ranges::fill(fields.radiosity, 0.0);
     residuals = this->residuals(fields);
     ++iterations;
   } while (residuals.worst() > options_.tolerance && std::isfinite(residuals.worst()) &&

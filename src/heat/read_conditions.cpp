@@ -167,7 +167,22 @@ class Lines {
         fail(lines_[k], fmt::format("{} is named here and in {}; name it once", targets_.nameOf(t),
                                     lines_[named_by.back()].origin));
       }
+      requireOneHeat(k, t);
       named_by.push_back(k);
+    }
+  }
+
+  /// Of two settings that heat a target, neither goes before the other, unless one is by pattern or
+  /// the later repeats the earlier.
+  void requireOneHeat(std::size_t k, Index t) const {
+    const GivenCondition& line = lines_[k];
+    if (k < table_ || !line.heated()) return;
+    for (const std::size_t other : of_target_[t]) {
+      const GivenCondition& before = lines_[other];
+      if (other < table_ || by_pattern_[other] != by_pattern_[k] || !before.heated()) continue;
+      if (before.name == line.name && before.heatedAs(line)) continue;
+      fail(line, fmt::format("{} is heated here and by {}; give one of them", targets_.nameOf(t),
+                             before.origin));
     }
   }
 

@@ -74,7 +74,11 @@ std::vector<SurfaceHeat> summed(const HeatSolution& solution, const Parts& parts
     surface.radiosity /= surface.area;
     surface.irradiance /= surface.area;
     surface.net_flux = surface.radiated / surface.area;
-    if (std::isnan(surface.temperature)) surface.lowest = surface.highest = surface.temperature;
+    if (std::isnan(surface.temperature)) {
+      surface.lowest = surface.highest = surface.temperature;
+    } else {  // a mean may be outside by rounding
+      surface.temperature = std::clamp(surface.temperature, surface.lowest, surface.highest);
+    }
     if (!parts.error.empty()) surface.irradiance_error = error[s] / surface.area * rms;
   }
   return out;

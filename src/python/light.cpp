@@ -79,6 +79,19 @@ HeatOptions heatOptions(const py::dict& given) {
   return options;
 }
 
+/// Of surfaces, or of the rows of a matrix from elsewhere.
+HeatConditions conditionsOf(const FactorsHandle& factors, const ConditionText& text) {
+  if (!factors.mesh) {
+    std::vector<std::string> names = factors.names;
+    names.resize(factors.factors.matrix.size());
+    return readHeatConditions(names, {}, text);
+  }
+  if (!factors.mesh->scene) {
+    throw InputError("heat: the results file has no scene, whose surfaces have names");
+  }
+  return readHeatConditions(*factors.mesh->scene, text);
+}
+
 /// `settings`, `groups`: see ConditionText.
 std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
                                  const std::string& table_path,
@@ -89,16 +102,18 @@ std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
   auto handle = std::make_shared<HeatHandle>();
   handle->factors = std::move(factors);
   const FactorsHandle& of = *handle->factors;
-  const MeshHandle& mesh = meshOf(of, "heat by surface names");
-  if (!mesh.scene)
-    throw InputError("heat: the results file has no scene, whose surfaces have names");
   const HeatConditions conditions =
-      readHeatConditions(*mesh.scene, readConditionText(table_path, settings, groups));
+      conditionsOf(of, readConditionText(table_path, settings, groups));
   validate(conditions, options);
   handle->notes = conditions.notes;
   runLong(report, [&](Progress& progress) {
-    handle->solution = solveHeat(of.factors, conditions, mesh.result.mesh, options, progress);
+    handle->solution =
+        of.mesh ? solveHeat(of.factors, conditions, of.mesh->result.mesh, options, progress)
+                : solveHeat(of.factors, {conditions.conditions, conditions.of_surface, {}}, options,
+                            progress);
   });
+  handle->solution.conditions = conditions.text;
+  if (!of.mesh) return handle;
   handle->key = [options, conditions, self = handle.get()] {
     const FactorsHandle& made_of = *self->factors;
     return keyOfHeat(options, conditions, made_of.key(),
@@ -134,10 +149,13 @@ std::shared_ptr<HeatHandle> heatOfRows(std::shared_ptr<FactorsHandle> factors,
 }
 
 py::list heatTable(const HeatHandle& heat) {
-  const MeshHandle& mesh = meshOf(*heat.factors, "a table by surface names");
+  const FactorsHandle& of = *heat.factors;
+  std::vector<std::string> names = of.names;
+  names.resize(of.factors.matrix.size());
   py::list list;
   for (const SurfaceHeat& surface :
-       heatBySurface(heat.solution, mesh.result.mesh, heat.factors->factors)) {
+       of.mesh ? heatBySurface(heat.solution, of.mesh->result.mesh, of.factors)
+               : heatByName(heat.solution, names, of.factors)) {
     list.append(dictOf(surface));
   }
   return list;

@@ -277,6 +277,7 @@ TEST(HeatConditionsByName, MaterialsGiveEmissivitiesWhereAsked) {
   const auto emissivities = [&](const std::vector<std::string>& settings) {
     const HeatConditions c = readHeatConditions(scene, "", settings);
     std::vector<double> out;
+    out.reserve(c.of_surface.size());
     for (const Index k : c.of_surface) out.push_back(c.conditions[k].emissivity[0].values[0]);
     EXPECT_TRUE(c.from_materials);
     return out;
@@ -337,6 +338,10 @@ TEST(HeatConditionsByName, WrongConditionsAreNamed) {
   says({"*.power=5"}, "give them by name");
   says({"*.emissivity=.5", "*.flux=0", "shell.power=60", "walls.emissivity=.1"},
        "power and isothermal are of all that the name stands for");
+  says({"*.emissivity=.5", "*.flux=0", "lid.temperature=300", "lid.flux=5"},
+       "--condition lid.flux=5: lid is heated here and by --condition lid.temperature=300");
+  says({"*.emissivity=.5", "*.flux=0", "*l*.temperature=300", "*d.temperature=400"},
+       "lid is heated here and by --condition *l*.temperature=300");
   says({"*.emissivity=.5", "*.flux=0", "lid.convection=5"}, "lid: has convection and no ambient");
   says({}, "no conditions are given");
 }

@@ -403,6 +403,53 @@ TEST(Heat, EmissivityFollowsItsTable) {
   EXPECT_NE(test::errorOf([&] { solved(plate, {c}); }).find("plate: reaches"), std::string::npos);
 }
 
+// Where d ln eps / d ln T > 4, taking eps from the step before would diverge; at the corners of the
+// table Newton's method alone would go round in circles.
+TEST(Heat, EmissivityMayRiseSteeply) {
+  HeatCondition c = fluxed("plate", 0, 0);
+  const FormFactors plate = test::factorsFrom(Matrix::Zero(1, 1), {1});
+  const std::vector<Emissivity> tables = {{{200, 335, 345, 600}, {.3, .3, .8, .8}},
+                                          {{200, 330, 360, 600}, {.3, .3, .8, .8}},
+                                          {{200, 300, 350, 600}, {.1, .1, .5, .5}},
+                                          {{200, 335, 335.01, 600}, {.05, .05, .95, .9}}};
+  for (const Emissivity& table : tables) {
+    c.emissivity = {table};
+    for (const double t : {250.0, 300.5, 331.0, 335.0, 335.005, 340.0, 345.0, 359.0, 500.0}) {
+      c.flux = table.at(t) * sigmaT4(t);
+      const HeatSolution s = solved(plate, {c});
+      EXPECT_EQ(s.summary.status, HeatStatus::converged) << s.summary.message << " at " << t;
+      EXPECT_NEAR(s.temperature[0], t, 1e-8 * t);  // the balance holds to 1e-9
+    }
+  }
+}
+
+// Two coatings that face each other: q between them has its closed form, and each gives off what is
+// supplied to it.
+TEST(Heat, SteepEmissivitiesExchangeHeat) {
+  const Emissivity table = {{200, 335, 345, 900}, {.1, .1, .9, .9}};
+  HeatOptions options;
+  options.sky_temperature = 250;
+  for (const double supplied : {50.0, 300.0, 700.0}) {
+    HeatCondition a = fluxed("a", 0, supplied);
+    HeatCondition b = fluxed("b", 0, supplied / 3);
+    a.emissivity = b.emissivity = {table};
+    Matrix f = Matrix::Zero(2, 2);
+    f << 0, .4, .4, 0;
+    const FormFactors factors = test::factorsFrom(f, {1, 1});
+    const HeatSolution s = solved(factors, {a, b}, options);
+    ASSERT_EQ(s.summary.status, HeatStatus::converged) << s.summary.message;
+    double j[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double eps = table.at(s.temperature[i]);
+      j[i] = eps * sigmaT4(s.temperature[i]) + (1 - eps) * s.irradiance[i];
+      EXPECT_NEAR(s.radiosity[i], j[i], 1e-6);
+    }
+    const double sky = .6 * sigmaT4(250);
+    EXPECT_NEAR(j[0] - (.4 * j[1] + sky), supplied, 1e-5);
+    EXPECT_NEAR(j[1] - (.4 * j[0] + sky), supplied / 3, 1e-5);
+  }
+}
+
 // A surface of uneven rows at one temperature: its power is what both give off.
 TEST(Heat, IsothermalSurfaceSharesItsPower) {
   HeatCondition c = test::condition("heater", .8);
@@ -451,6 +498,12 @@ TEST(Heat, RefusesConditionsWithoutATemperature) {
   cold.convection = 3;
   cold.ambient = 300;
   says(error({cold, test::at("b", .5, 300)}), "a: more heat is taken out");
+  // The heat is taken out of b, which takes it from a.
+  says(error({fluxed("a", .5, 0), fluxed("b", .5, -1e4)}), "no level");
+  HeatCondition airy = fluxed("a", .5, 0);
+  airy.convection = 5;
+  airy.ambient = 300;
+  says(error({airy, fluxed("b", .5, -3000)}), "b: more heat is taken out of it (3000 W/m^2)");
   HeatCondition both = test::at("a", .5, 300);
   both.flux = 1;
   says(error({both, test::at("b", .5, 300)}),
@@ -465,6 +518,13 @@ TEST(Heat, AdiabaticPlateUnderAColdSkyIsAtZero) {
   const HeatSolution s = solved(test::factorsFrom(Matrix::Zero(1, 1), {1}), {fluxed("a", .5, 0)});
   EXPECT_TRUE(s.summary.usable());
   EXPECT_EQ(s.temperature[0], 0);
+  // The same with a table of emissivity, for which the solution is iterated.
+  HeatCondition c = fluxed("a", 0, 0);
+  c.emissivity = {{{0, 300}, {.3, .5}}};
+  const HeatSolution cold = solved(facingPlates(), {c, test::at("b", .5, 0)});
+  EXPECT_TRUE(cold.summary.usable());
+  EXPECT_EQ(cold.temperature[0], 0);
+  EXPECT_EQ(cold.radiosity[0], 0);
 }
 
 }  // namespace

@@ -89,6 +89,21 @@ def test_heat_between_plates_has_its_closed_form():
     assert got.summary["balance"]["radiated"] == pytest.approx(0, abs=1e-5)
 
 
+def test_rows_of_a_matrix_take_every_condition_by_name():
+    F = rad.from_csr([[0, 1], [1, 0]], [1, 1], names=["hot", "cold"])
+    sigma, h, ambient = 5.67037441918443e-8, 5.0, 300.0
+    got = rad.heat(F, {"hot": 0.8, "cold": {100: 0.5, 2000: 0.5}}, {"hot": 1000, "cold": None},
+                   power={"cold": -1000}, convection={"cold": h}, ambient={"cold": ambient})
+    T = got.temperature[1]
+    # What arrives by radiation is taken out or given to the air.
+    arriving = sigma * (1000**4 - T**4) / (1 / 0.8 + 1 / 0.5 - 1)
+    assert arriving == pytest.approx(1000 + h * (T - ambient), rel=1e-8)  # the solver's tolerance
+    cold = got.table()[1]
+    assert (cold["name"], cold["convected"]) == ("cold", pytest.approx(h * (T - ambient)))
+    with pytest.raises(rad.InputError, match="power: does not go with arrays"):
+        rad.heat(F, [0.8, 0.5], 300, power={"cold": 1})
+
+
 def test_heat_of_a_name_without_temperature_is_adiabatic():
     F = rad.form_factors(rad.mesh(rad.load("data/cornell-box-closed.obj"), patches=60))
     heat = rad.heat(F, 0.8, {"lamp": 1200, "floor": 300, "*": None})

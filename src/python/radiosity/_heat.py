@@ -64,8 +64,9 @@ class Heat(Fixed):
         return self._form_factors
 
     def table(self) -> List[dict]:
-        """A dict a surface: name, area (m^2), temperature (its mean), lowest, highest (K), radiosity,
-        irradiance, irradiance_error (None: unknown), net_flux (W/m^2), radiated, convected (W)."""
+        """A dict a surface, or a name of a matrix's rows: name, area (m^2), temperature (its mean),
+        lowest, highest (K), radiosity, irradiance, irradiance_error (None: unknown), net_flux (W/m^2),
+        radiated, convected (W)."""
         return _core.heat_table(self._handle)
 
     def __repr__(self) -> str:
@@ -121,7 +122,7 @@ def _settings(given: Mapping[str, Optional[ByName]]) -> List[str]:
 
 
 def _of_rows(F: FormFactors, name: str, value: Optional[Any], other: float) -> np.ndarray:
-    """A value a row, of one number, an array, or values by the rows' names (* for all others)."""
+    """A value a row, of one number, an array, or numbers by the rows' names (* for all others)."""
     if not isinstance(value, Mapping):
         given = numbers(name, other if value is None else value, [(), (len(F),)], "one a row", nan=True)
         return np.ascontiguousarray(np.broadcast_to(given, (len(F),)))
@@ -154,8 +155,8 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
     band_edges: micrometres. Nothing is guessed: a surface without emissivity or condition is an error.
     A UserWarning says where the iterations did not converge.
 
-    Of a matrix from elsewhere: emissivity, temperature and flux alone, by the rows' names or one a
-    row, (rows,), NaN where not given.
+    Of a matrix from elsewhere: the same by the rows' names, or emissivity, temperature and flux alone
+    as arrays of one a row, (rows,), NaN where not given.
 
     What is given is copied; the arrays of the result are views of new ones. Errors: InputError naming
     the surface and the cure.
@@ -177,7 +178,7 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
                    band_fractions=numbers("band_fractions", band_fractions, [(None,)]).tolist())
     conditions = dict(emissivity=emissivity, temperature=temperature, flux=flux, power=power,
                       convection=convection, ambient=ambient, isothermal=isothermal)
-    by = _heat_of_rows if F.mesh is None else _heat_by_name
+    by = _heat_of_rows if F.mesh is None and _has_arrays(conditions) else _heat_by_name
     found = by(F, conditions, table, texts("groups", groups), options, progress)
     summary = found.summary
     if not summary["usable"]:
@@ -187,14 +188,19 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
 
 def _heat_by_name(F: FormFactors, given: dict, table: Any, groups: List[str], options: dict,
                   progress: Progress) -> Heat:
-    _refuse_arrays(given, len(options["band_fractions"]) or len(options["band_edges"]) + 1)
+    if F.mesh is not None:
+        _refuse_arrays(given, len(options["band_fractions"]) or len(options["band_edges"]) + 1)
     settings = _settings(given)
     if not settings and table is None:
         raise InputError("heat: no conditions are given; give emissivity and temperature (or flux, "
-                         "power, convection) by surface name, or table=FILE.csv")
+                         "power, convection) by name, or table=FILE.csv")
     path = "" if table is None else path_text("table", table)
     with reporting(progress) as report:
         return Heat(_core.heat(F._handle, path, settings, groups, options, report), F)
+
+
+def _has_arrays(conditions: dict) -> bool:
+    return any(not isinstance(value, Mapping) and np.ndim(value) for value in conditions.values())
 
 
 def _refuse_arrays(conditions: dict, bands: int) -> None:
@@ -215,8 +221,8 @@ def _heat_of_rows(F: FormFactors, given: dict, table: Any, groups: List[str], op
                if given[name] is not None]
     refused += ["table"] * (table is not None) + ["groups"] * bool(groups)
     if refused:
-        raise InputError(f"{refused[0]}: is of surfaces of a mesh; of a matrix give "
-                         "emissivity, temperature and flux")
+        raise InputError(f"{refused[0]}: does not go with arrays of one a row; give all conditions by "
+                         "the rows' names")
     if given["emissivity"] is None:
         raise InputError(f"emissivity: give one number, one a row ({len(F)},), or a dict by name")
     eps, T, q = (_of_rows(F, name, given[name], np.nan) for name in ("emissivity", "temperature", "flux"))
