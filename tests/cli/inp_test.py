@@ -97,6 +97,30 @@ class Inp(CliTest):
         self.assertAlmostEqual(table["form_factors"][names.index("heater")][names.index("pair")], 0.199825,
                                delta=1e-6)  # of its six digits
 
+    def test_surfaces_name_the_sides_of_shells(self):
+        shells = HEAD + TWO
+        self.assertEqual(self.surfaces(shells + "*SURFACE, NAME=hot\nSurface1, SPOS\n"), {"hot": 2})
+        self.assertEqual(self.surfaces(shells + "*SURFACE, NAME=hot\n1,\n"), {"hot": 1, "Surface1": 1})
+        # A smaller set says more than a surface of all.
+        self.assertEqual(self.surfaces(shells + '*ELSET, ELSET="a, b"\n1\n*SURFACE, NAME=hot\nSurface1\n'),
+                         {"a, b": 1, "hot": 1})
+        self.assertEqual(self.surfaces(shells + '*ELSET, ELSET="a, b"\n1\n*SURFACE, NAME=hot\n"a, b", SPOS\n'),
+                         {"hot": 1, "Surface1": 1})
+        both = shells + "*SURFACE, NAME=up\n1, SPOS\n*SURFACE, NAME=down\n1, SNEG\n2, SNEG\n"
+        self.assertEqual(self.surfaces(both), {"up": 1, "down": 2})
+        self.assertIn("turned over where *SURFACE names their negative side (SNEG): down",
+                      self.run_program("info", "a.inp").out)
+
+    def test_the_negative_side_of_a_plate_faces_the_other_way(self):
+        nodes = "".join(f"{k}, {x}, {y}, {z}\n" for k, (x, y, z) in enumerate(
+            [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], 1))
+        self.put(f"*NODE\n{nodes}*ELEMENT, TYPE=S4\n1, 1,2,3,4\n2, 5,6,7,8\n"
+                 "*SURFACE, NAME=low\n1, SPOS\n*SURFACE, NAME=high\n2, SNEG\n")
+        self.run_program("factors", "a.inp", "--patches", "2", "--between", "groups", "-o", "t.json")
+        # Unit squares face to face: Howell C-11.
+        factors = json.loads((self.folder / "t.json").read_text())["form_factors"]
+        self.assertAlmostEqual(factors[0][1], 0.199825, delta=1e-6)  # of its six digits
+
     def test_surfaces_of_an_assembly_have_sides_of_several_instances(self):
         part = ("*PART, NAME=p\n*NODE\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
                 "*ELEMENT, TYPE=C3D8, ELSET=body\n1, 1,2,3,4,5,6,7,8\n*SURFACE, NAME=foot\nbody, S1\n*END PART\n")

@@ -10,8 +10,38 @@
 
 namespace radiosity {
 
+namespace {
+
+std::string_view unquoted(std::string_view text) {
+  const bool quoted = text.size() > 1 && text.front() == '"' && text.back() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+/// The parts between commas that are not in quotation marks.
+std::vector<std::string_view> partsOf(std::string_view line) {
+  std::vector<std::string_view> parts;
+  bool quoted = false;
+  std::size_t begin = 0;
+  for (std::size_t k = 0; k <= line.size(); ++k) {
+    if (k < line.size() && line[k] == '"') quoted = !quoted;
+    if (k < line.size() && (line[k] != ',' || quoted)) continue;
+    parts.push_back(line.substr(begin, k - begin));
+    begin = k + 1;
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::string_view> inpFields(std::string_view line) {
+  std::vector<std::string_view> fields = partsOf(line);
+  for (std::string_view& field : fields) field = unquoted(trimmed(field));
+  if (fields.back().empty()) fields.pop_back();  // a comma at the end of the line
+  return fields;
+}
+
 InpKeyword inpKeyword(std::string_view line) {
-  const std::vector<std::string_view> parts = splitAt(line, ',');
+  const std::vector<std::string_view> parts = partsOf(line);
   InpKeyword keyword;
   keyword.word = lowerCase(trimmed(parts[0].substr(1)));
   for (std::size_t k = 1; k < parts.size(); ++k) {
@@ -20,10 +50,7 @@ InpKeyword inpKeyword(std::string_view line) {
     if (name.empty()) continue;
     std::string_view value;
     if (equals != std::string_view::npos) value = trimmed(parts[k].substr(equals + 1));
-    if (value.size() > 1 && value.front() == '"' && value.back() == '"') {
-      value = value.substr(1, value.size() - 2);
-    }
-    keyword.parameters[name] = value;
+    keyword.parameters[name] = unquoted(value);
   }
   return keyword;
 }

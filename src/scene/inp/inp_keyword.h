@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/grouped_faces.h"
 
@@ -21,6 +22,9 @@ struct InpKeyword {
   }
   bool has(const std::string& name) const { return parameters.contains(name); }
 };
+
+/// The fields of a data line, between commas that are not in quotation marks.
+std::vector<std::string_view> inpFields(std::string_view line);
 
 /// Parses a keyword line; `line` begins with a star.
 InpKeyword inpKeyword(std::string_view line);

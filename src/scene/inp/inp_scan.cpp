@@ -168,7 +168,7 @@ void InpScanner::beginElements() {
 /// Begins a surface. Surfaces of nodes, and combinations of other surfaces, do not list sides.
 void InpScanner::beginSides() {
   const std::string type = lowerCase(current_.get("type"));
-  if (kind_ != InpElements::volumes || (!type.empty() && type != "element")) {
+  if (!type.empty() && type != "element") {
     current_.word.clear();
   } else {
     beginSurface(bodies_, current_.get("name"));
@@ -176,9 +176,7 @@ void InpScanner::beginSides() {
 }
 
 void InpScanner::data(std::string_view line) {
-  std::vector<std::string_view> fields = splitAt(line, ',');
-  for (std::string_view& field : fields) field = trimmed(field);
-  if (fields.back().empty()) fields.pop_back();  // a comma at the end of the line
+  const std::vector<std::string_view> fields = inpFields(line);
   if (current_.word == "node") {
     node(fields);
   } else if (current_.word == "element" && shape_) {

@@ -50,8 +50,11 @@ struct InpMaker {
 
 /// Sides of elements in a *SURFACE.
 struct InpSides {
+  /// Of shells: the side to which the normal points, and the other.
+  static constexpr int kPositive = 7;
+  static constexpr int kNegative = 8;
   std::vector<InpRange> elements;
-  int side;  ///< from 1
+  int side;  ///< of a volume, from 1 to 6; or of a shell
 };
 struct InpSurface {
   std::string name;
@@ -68,7 +71,7 @@ struct InpBody {
   std::vector<std::string> node_makers;          ///< keywords that make nodes, which we do not
   std::vector<InpSet> sets;                      ///< of elements, in the order they come
   std::map<std::string, std::size_t> set_index;  ///< by name in small letters
-  std::vector<InpSurface> surfaces;              ///< of sides of volumes
+  std::vector<InpSurface> surfaces;              ///< of sides of volumes and shells
 };
 
 struct InpScan {

@@ -28,6 +28,14 @@ void addSidesTo(InpBody& body, const InpBodies& bodies, std::string_view members
   if (!sides.elements.empty()) body.surfaces.back().sides.push_back(std::move(sides));
 }
 
+/// 0: it is no side.
+int sideCalled(const std::string& label) {
+  if (label.empty() || label == "spos") return InpSides::kPositive;
+  if (label == "sneg") return InpSides::kNegative;
+  const bool of_volume = label.size() == 2 && label[0] == 's' && label[1] >= '1' && label[1] <= '6';
+  return of_volume ? label[1] - '0' : 0;
+}
+
 }  // namespace
 
 void beginSurface(InpBodies& bodies, const std::string& name) {
@@ -41,10 +49,9 @@ void beginSurface(InpBodies& bodies, const std::string& name) {
 }
 
 void addSides(InpBodies& bodies, const std::vector<std::string_view>& fields) {
-  if (fields.size() != 2) return;
-  const std::string label = lowerCase(fields[1]);
-  if (label.size() != 2 || label[0] != 's' || label[1] < '1' || label[1] > '6') return;
-  const int side = label[1] - '0';
+  if (fields.empty() || fields.size() > 2) return;
+  const int side = sideCalled(fields.size() == 2 ? lowerCase(fields[1]) : "");
+  if (side == 0) return;
   if (bodies.isInPart() || bodies.isInInstance()) {
     return addSidesTo(bodies.current(), bodies, fields[0], side);
   }

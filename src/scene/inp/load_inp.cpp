@@ -55,19 +55,50 @@ class BodyReader {
     refuseMadeElements();
     assignSets();
     nameSides();
-    std::vector<Index> corners;
-    for (std::size_t e = 0; e < body_.elements.size(); ++e) {
-      const InpElement& element = body_.elements[e];
-      corners.clear();
-      for (const long long number : element.nodes) corners.push_back(vertexOf(number, element));
-      scene_.faces.addElement(element.shape, corners, groupOf(e), std::size_t(element.number));
-    }
+    for (std::size_t e = 0; e < body_.elements.size(); ++e) addElement(e);
     scene_.elements += body_.elements.size();
   }
 
  private:
-  std::string groupOf(std::size_t e) const {
-    if (set_of_[e] != kNone) return body_.sets[set_of_[e]].name;
+  /// A shell is there once for each side that a surface names, the negative one turned over; once
+  /// if none is named.
+  void addElement(std::size_t e) {
+    const InpElement& element = body_.elements[e];
+    std::vector<Index> corners;
+    corners.reserve(element.nodes.size());
+    for (const long long number : element.nodes) corners.push_back(vertexOf(number, element));
+    const auto add = [&](const NamedSide& side) {
+      scene_.faces.addElement(element.shape, corners, groupOf(e, side),
+                              std::size_t(element.number));
+    };
+    const NamedSide positive = sideOf(e, InpSides::kPositive);
+    const NamedSide negative = sideOf(e, InpSides::kNegative);
+    if (positive.surface != nullptr || negative.surface == nullptr) add(positive);
+    if (negative.surface == nullptr) return;
+    std::reverse(corners.begin(), corners.begin() + element.shape.corners);
+    add(negative);
+    scene_.notes.add("shells are turned over where *SURFACE names their negative side (SNEG)",
+                     negative.surface->name);
+  }
+
+  /// The surface that a side is in, and how many sides it has in this body.
+  struct NamedSide {
+    const InpSurface* surface = nullptr;
+    std::size_t size = 0;
+  };
+
+  NamedSide sideOf(std::size_t e, int side) const {
+    const auto found = named_.find({Index(e), side});
+    return found == named_.end() ? NamedSide() : found->second;
+  }
+
+  /// A surface's name goes before that of a set, unless the set is smaller.
+  std::string groupOf(std::size_t e, const NamedSide& side) const {
+    const bool in_set = set_of_[e] != kNone;
+    if (side.surface != nullptr && (!in_set || side.size <= size_of_set_[e])) {
+      return side.surface->name;
+    }
+    if (in_set) return body_.sets[set_of_[e]].name;
     return body_.name.empty() ? "unnamed" : body_.name;
   }
 
@@ -160,6 +191,7 @@ class BodyReader {
         rank[e] = rank_here;
       }
     }
+    for (const auto& [order, size] : rank) size_of_set_.push_back(size);
     for (std::size_t s = 0; s < loses.size(); ++s) {
       if (!loses[s]) continue;
       scene_.notes.add(
@@ -169,30 +201,37 @@ class BodyReader {
     }
   }
 
-  /// Names the sides of volumes in *SURFACE; a side in several belongs to the first.
+  /// Names the sides in *SURFACE; a side in several belongs to the first.
   void nameSides() {
-    std::map<std::pair<Index, int>, const std::string*> named;
     for (const InpSurface& surface : body_.surfaces) {
+      std::vector<NamedSide*> own;
       for (const InpSides& sides : surface.sides) {
         for (const Index e : elementsOf(sides.elements)) {
-          const auto [place, is_new] = named.try_emplace({e, sides.side}, &surface.name);
+          const bool is_shell = body_.elements[e].shape.dimension == 2;
+          if (is_shell != (sides.side >= InpSides::kPositive)) continue;
+          const auto [place, is_new] = named_.try_emplace({e, sides.side}, NamedSide{&surface, 0});
           if (is_new) {
-            scene_.faces.nameSide(Index(scene_.elements) + e, sides.side, surface.name);
-          } else if (*place->second != surface.name) {
+            own.push_back(&place->second);
+            if (!is_shell)
+              scene_.faces.nameSide(Index(scene_.elements) + e, sides.side, surface.name);
+          } else if (place->second.surface->name != surface.name) {
             scene_.notes.add(
                 "surfaces that have sides in common with earlier ones, and leave these to them",
                 surface.name);
           }
         }
       }
+      for (NamedSide* side : own) side->size = own.size();
     }
   }
 
   const InpBody& body_;
   InpScene& scene_;
   NodeNumbers nodes_;
-  std::vector<Index> order_;   ///< elements, sorted by their numbers
-  std::vector<Index> set_of_;  ///< by element; kNone: in no set
+  std::vector<Index> order_;                          ///< elements, sorted by their numbers
+  std::vector<Index> set_of_;                         ///< by element; kNone: in no set
+  std::vector<std::size_t> size_of_set_;              ///< by element
+  std::map<std::pair<Index, int>, NamedSide> named_;  ///< by element and side
 };
 
 }  // namespace
