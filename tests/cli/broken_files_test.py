@@ -111,7 +111,7 @@ class Gltf(FileTest):
         self.says("a.glb: the file is cut off within its header; export the scene again", "info",
                   "a.glb")
         self.put("a.glb", "hello")
-        self.refuse("info", "a.glb", words=["a.glb: is neither binary glTF nor JSON"])
+        self.refuse("info", "a.glb", words=["a.glb: is neither binary glTF nor a JSON object"])
 
     def test_accessors_without_data_are_refused(self):
         def forge(document):

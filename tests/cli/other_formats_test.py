@@ -392,6 +392,34 @@ class OtherFormats(CliTest):
         self.says(": its references stand for 4.4e+07 elements, over 1e+06; export it without instances, or as .glb",
                   "a.dae", f"<COLLADA><library_nodes>{nodes}</library_nodes></COLLADA>")
 
+    def test_deep_nesting_is_refused_before_assimp_reads_it(self):
+        deep = "are nested more than 1000 deep; export it again, or as .glb"
+        self.says(f": objects {deep}", "a.ac", "AC3Db\n" + "OBJECT group\nkids 1\n" * 20000 + "OBJECT poly\nkids 0\n")
+        nodes = b""
+        for _ in range(2000):
+            nodes = b"NODE" + struct.pack("<I", 41 + len(nodes)) + b"n\0" + bytes(39) + nodes
+        self.says(f": nodes {deep}", "a.b3d", b"BB3D" + struct.pack("<II", 4 + len(nodes), 1) + nodes)
+        self.says(f": its parts {deep}", "a.fbx", FBX + "A: {" * 20000)
+
+        def fbx(models, pairs):
+            objects = "".join(f'Model: {k}, "Model::m{k}", "Null" {{\n}}\n' for k in range(models))
+            links = "".join(f'C: "OO",{child},{parent}\n' for child, parent in pairs)
+            return f"; FBX 7.4.0 project file\nObjects:  {{\n{objects}}}\nConnections:  {{\n{links}}}\n"
+
+        self.says(": a model contains itself, by way of others; export it again", "a.fbx",
+                  fbx(3, [(0, 9), (1, 0), (2, 1), (1, 2)]))
+        self.says(f": models {deep}", "a.fbx", fbx(2000, [(k, k - 1) for k in range(1, 2000)]))
+        # Binary FBX: records within records, each with its end, sizes and a name.
+        record = b""
+        for _ in range(2000):
+            record = b"\0" * 12 + b"\1A" + record
+        start = len(b"Kaydara FBX Binary  \0\x1a\0") + 4
+        ends = bytearray(record)
+        for k in range(2000):
+            ends[14 * k:14 * k + 4] = struct.pack("<I", start + len(record))
+        self.says(f": its parts {deep}", "a.fbx",
+                  b"Kaydara FBX Binary  \0\x1a\0" + struct.pack("<I", 7400) + bytes(ends))
+
     def test_words_where_corners_are_due_are_refused(self):
         self.says(": <p> holds `inf`, which is no index of a corner; export it again", "a.dae",
                   COLLADA.replace("<p>0 1 2 3</p>", "<p>0 1 inf 3</p>"))

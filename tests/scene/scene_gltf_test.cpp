@@ -326,9 +326,9 @@ TEST_F(SceneGltf, RefusesFilesThatAreNoGltf) {
   EXPECT_CONTAINS(errorIn("a.gltf", "{ \"asset\": "),
                   "a.gltf: is not JSON that can be read: it is cut off");
   EXPECT_CONTAINS(errorIn("a.gltf", std::string("\x7f\0\1garbage", 10)),
-                  "neither binary glTF nor JSON");
+                  "neither binary glTF nor a JSON object");
   EXPECT_CONTAINS(errorIn("a.glb", "not a binary glTF at all"),
-                  "a.glb: is neither binary glTF nor JSON");
+                  "a.glb: is neither binary glTF nor a JSON object");
   EXPECT_CONTAINS(errorIn("a.gltf", ""), "is empty");
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(path("absent.glb")); }), "no such file");
   Document old = triangle();

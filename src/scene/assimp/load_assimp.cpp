@@ -26,6 +26,7 @@
 #include "scene/assimp/assimp_library.h"
 #include "scene/assimp/assimp_materials.h"
 #include "scene/assimp/collada_cameras.h"
+#include "scene/assimp/nesting_preflight.h"
 #include "scene/assimp/vrml_document.h"
 #include "scene/assimp/x3d_document.h"
 #include "scene/assimp/xml_preflight.h"
@@ -410,6 +411,9 @@ void noteTwoSidedAc3d(Scene& scene) {
 Scene loadAssimp(const std::string& path, const SceneOptions& options) {
   const std::string extension = lowerExtension(path);
   if (extension == ".3ds") requireWhole3ds(path);
+  if (extension == ".fbx") checkFbxNesting(path, readWholeFile(path));
+  if (extension.starts_with(".ac")) checkAc3dNesting(path, readWholeFile(path));
+  if (extension == ".b3d") checkBlitz3dNesting(path, readWholeFile(path));
   Scene scene = AssimpReader(path, options).read();
   if (extension.starts_with(".ac")) noteTwoSidedAc3d(scene);
   return scene;

@@ -42,7 +42,7 @@ void checkGltf(const std::string& path, std::string_view content) {
   std::string_view start = content.substr(0, 64);
   if (start.starts_with(kByteOrderMark)) start.remove_prefix(kByteOrderMark.size());
   if (!isGlb(content) && !trimmed(start).starts_with('{')) {
-    throw InputError(path + ": is neither binary glTF nor JSON; export the scene again");
+    throw InputError(path + ": is neither binary glTF nor a JSON object; export the scene again");
   }
   const Claims claims = readClaims(path, gltfJson(path, content));
   if (!claims.is_object || claims.version.empty()) {

@@ -77,7 +77,11 @@ void Reader::read() {
   });
   noteUnused();
   if (scene_.faceCount() == 0) {
-    file_.fail("no faces: no node of the scene has a mesh of triangles; export meshes");
+    file_.fail(fmt::format("no faces: no node of {} has a mesh of triangles; export meshes",
+                           model_.scenes.size() > 1
+                               ? fmt::format("scene {} of {} (from 0), the one that is shown,",
+                                             std::max(model_.defaultScene, 0), model_.scenes.size())
+                               : "the scene"));
   }
   builder_.finish();
   ignored_.appendTo(scene_.notes);

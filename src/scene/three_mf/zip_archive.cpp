@@ -22,7 +22,10 @@ constexpr std::uint64_t kLargeLocator = 0x07064b50;
 /// Marks a number that needs more bits and is stored elsewhere.
 constexpr std::uint64_t kInLargeForm = 0xffffffff;
 
-constexpr std::uint64_t kMostUnpacked = (std::uint64_t{1} << 31U) - 1;
+/// The most bytes that zlib takes at once.
+constexpr std::uint64_t kMostOfZlib = (std::uint64_t{1} << 31U) - 1;
+/// The largest file that is unpacked: some 10 million triangles.
+constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 30U;
 /// The most bytes to which one deflated byte can unpack (zlib's manual, "Maximum expansion
 /// factor").
 constexpr std::uint64_t kMostRatio = 1032;
@@ -145,14 +148,16 @@ void ZipArchive::require(const Entry& entry) const {
     fail(fmt::format("{}: is packed by method {}, which is not read; pack it by deflate",
                      entry.name, entry.method));
   }
-  if (entry.size > kMostUnpacked || entry.packed > kMostUnpacked) {
+  const auto failForSize = [&] {
     fail(fmt::format("{}: unpacks to {} bytes, more than are read; split the scene", entry.name,
                      entry.size));
-  }
+  };
+  if (entry.size > kMostOfZlib || entry.packed > kMostOfZlib) failForSize();
   const bool is_stored = entry.method == 0;
   if (is_stored ? entry.size != entry.packed : entry.size / kMostRatio > entry.packed) {
     fail(fmt::format("{}: its size is wrong; the archive is damaged, export it again", entry.name));
   }
+  if (entry.size > kMostUnpacked) failForSize();
 }
 
 /// The packed bytes of a file. They follow a header, which repeats the name and has extra fields.
