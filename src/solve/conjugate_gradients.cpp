@@ -220,7 +220,9 @@ class ConjugateGradients {
     if (foreseen(r) > tolerance) return false;
     if (!system_.nonnegative) return true;
     const BandArray own = asArray(system_.emission, system_.bands) + down_ * z_;
-    return ((down_ * r).abs() <= kOwnShare * tolerance * own).all();
+    return ((down_ * r).abs().rowwise() - (kOwnRounding * largest_).transpose() <=
+            kOwnShare * tolerance * own)
+        .all();
   }
 
   const System& system_;

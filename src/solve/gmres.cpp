@@ -98,7 +98,7 @@ class Gmres {
       if (most <= tolerance * largest_[b] && system_.nonnegative) {
         const Eigen::ArrayXd own =
             (radiosity.col(b) + krylov[k].correction().array()).max(emission.col(b));
-        enough = enough && (left <= kOwnShare * tolerance * own).all();
+        enough = enough && (left <= kOwnShare * tolerance * own + kOwnRounding * largest_[b]).all();
       }
     }
     convergence_.record(largest);

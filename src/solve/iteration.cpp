@@ -69,9 +69,11 @@ double relativeResidual(const System& system, const std::vector<double>& radiosi
 bool smallEverywhere(const System& system, const std::vector<double>& radiosity,
                      const std::vector<double>& irradiance, double tolerance) {
   if (!system.nonnegative) return true;
+  const Eigen::ArrayXd rounding = kOwnRounding * largestEmission(system);
   for (std::size_t k = 0; k < radiosity.size(); ++k) {
     const double own = system.emission[k] + system.reflectance[k] * irradiance[k];
-    if (!(std::abs(own - radiosity[k]) <= kOwnShare * tolerance * own)) return false;
+    const double most = kOwnShare * tolerance * own + rounding[Eigen::Index(k) % system.bands];
+    if (!(std::abs(own - radiosity[k]) <= most)) return false;
   }
   return true;
 }

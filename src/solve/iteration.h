@@ -50,10 +50,15 @@ double relativeResidual(const System& system, const std::vector<double>& radiosi
 /// that are accurate in a norm alone.
 inline constexpr double kOwnShare = 100;
 
-/// Whether |r_i| <= kOwnShare tolerance (E_i + rho_i H_i) for every patch and band. Jacobi's and
-/// Gauss-Seidel's residuals are small where little light comes; those of solvers that minimise a
-/// norm are spread evenly, and leave a room behind a pinhole wrong. True where some E is negative:
-/// E and rho H may cancel then, and there is no such scale.
+/// The residual that rounding leaves at a patch that hardly any light reaches, such as a body a
+/// kilometre from the lamp, over the largest |E|: solvers that minimise a norm hold the light of
+/// all patches in one vector.
+inline constexpr double kOwnRounding = 1e-16;
+
+/// Whether |r_i| <= kOwnShare tolerance (E_i + rho_i H_i), or rounding, for every patch and band.
+/// Jacobi's and Gauss-Seidel's residuals are small where little light comes; those of solvers that
+/// minimise a norm are spread evenly, and leave a room behind a pinhole wrong. True where some E is
+/// negative: E and rho H may cancel then, and there is no such scale.
 bool smallEverywhere(const System& system, const std::vector<double>& radiosity,
                      const std::vector<double>& irradiance, double tolerance);
 

@@ -132,6 +132,31 @@ TEST(ConjugateGradients, SolveADarkRoomBehindAPinhole) {
   }
 }
 
+// A body a kilometre away gets less light than rounding of the lamp leaves: its own light cannot be
+// settled to a share of itself, and need not be.
+TEST(ConjugateGradients, ConvergeWithABodyThatHardlyAnyLightReaches) {
+  const std::size_t n = 60;
+  test::Random random(5);
+  auto [f, area] = test::reciprocal(n, random);
+  const auto last = Eigen::Index(n - 1);
+  f.row(last) *= 1e-11;
+  f.col(last) *= 1e-11;
+  f(last, last) = 0;
+  f *= 0.999;
+  const auto rho = random.vector(n, 0.3, 0.9);
+  std::vector<double> emission(n, 0.0);
+  emission[5] = 1e6;
+  for (const Solver solver : {Solver::cg, Solver::gmres}) {
+    const FormFactors factors =
+        solver == Solver::gmres ? test::factorsFrom(f, area) : test::symmetricFactorsFrom(f, area);
+    for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
+      Progress quiet;
+      const Solution s = solve(factors, rho, emission, 1, test::options(solver, tolerance), quiet);
+      EXPECT_EQ(s.summary.status, SolveStatus::converged) << s.summary.message;
+    }
+  }
+}
+
 TEST(ConjugateGradients, RefuseRowsThatAreNotSymmetric) {
   const auto factors = test::factorsFrom(test::cube(), std::vector<double>(6, 1.0));
   Progress quiet;
