@@ -126,6 +126,27 @@ Triangle exchangeOfGroups(const ExchangeMatrix& matrix, std::span<const Index> p
   return triangle;
 }
 
+/// The same if the rows lie in several processes, panel by panel: each pair of two groups counts in
+/// the row of its first group. The sums are in another order.
+Triangle exchangeOfSharedRows(const ExchangeMatrix& matrix, std::span<const Index> place_of,
+                              std::span<const Index> group_of, Progress& progress) {
+  Triangle triangle(place_of.size());
+  std::vector<double> exchange(place_of.size(), 0.0);  // of one patch, by place
+  matrix.forPanels([&](const RowPanel& rows) {
+    for (std::size_t i = rows.first(); i < rows.last(); ++i) {
+      progress.check();
+      rows.forRow(i, [&](Index j, double factor) { exchange[place_of[group_of[j]]] += factor; });
+      const Index own = place_of[group_of[i]];
+      for (std::size_t other = own; other < exchange.size(); ++other) {
+        triangle.add(own, other, matrix.area()[i] * exchange[other]);
+      }
+      std::ranges::fill(exchange, 0.0);
+      progress.advance();
+    }
+  });
+  return triangle;
+}
+
 ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const Index> group_of,
                                   std::vector<double> area, Precision stored, Progress& progress) {
   const std::size_t groups = area.size();
@@ -135,7 +156,9 @@ ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const 
   std::vector<Index> place;
   place.reserve(group_of.size());
   for (const Index i : matrix.order()) place.push_back(place_of[group_of[i]]);
-  Triangle exchange = exchangeOfGroups(matrix, place, groups, progress);
+  Triangle exchange = matrix.sharedRows() != nullptr
+                          ? exchangeOfSharedRows(matrix, place_of, group_of, progress)
+                          : exchangeOfGroups(matrix, place, groups, progress);
   ExchangeMatrix result = ExchangeMatrix::symmetric(std::move(area), std::move(order), stored);
   parallelFor(groups, 16, [&](std::size_t k) {
     const std::span<double> row = exchange.row(k);

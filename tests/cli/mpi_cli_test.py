@@ -142,6 +142,17 @@ class MpiTest(CliTest):
         # Both are within their bounds of the solution, of a residual of 1e-6 of the lamp.
         self.assertLess(np.abs(self.radiosity_of("solved_by_many.h5") - one).max(), 1e-5 * one.max())
 
+    def test_tables_are_those_of_one_process(self):
+        for method in ("exact", "rays", "hemicube"):
+            options = ["factors", BOX, "--patches", "200", "--method", method]
+            self.run_program(*options, "-o", "one.json")
+            self.mpirun(3, *options, "-o", "many.json", "-o", "many.vf")
+            one, many = (json.loads((self.folder / name).read_text()) for name in ("one.json", "many.json"))
+            self.assertEqual(one["names"], many["names"])
+            # Sums over patches are in another order.
+            for key in ("form_factors", "sky", "entry_error"):
+                np.testing.assert_allclose(many.get(key, 0), one.get(key, 0), rtol=1e-12, atol=1e-15)
+
     def test_commands_of_the_readme_run(self):
         (self.folder / "data").symlink_to(DATA)
         readme = Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "src/distributed/README.md"
