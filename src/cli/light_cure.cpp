@@ -17,9 +17,23 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+/// A surface that emits light.
+const Surface* lampOf(const Scene& scene) {
+  for (const Surface& surface : scene.surfaces) {
+    if (scene.materials[surface.material].emission != Vec3(0.0)) return &surface;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::string lightCure(const Request& request, const Scene& scene) {
+  if (const Surface* lamp = lampOf(scene)) {
+    return fmt::format(
+        "{} emits light, but the mesh has nothing of it, for a reason that a warning gives; if it "
+        "is in a room whose faces are turned outward, give these both sides: --two-sided all",
+        lamp->name);
+  }
   std::string command;
   for (const std::string& argument : request.arguments) command += quoted(argument) + " ";
   return fmt::format(

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
+
 #include "radiosity/patch_mesh.h"
 #include "support/mesh_builder.h"
 #include "support/scene_builder.h"
@@ -68,6 +70,30 @@ TEST(Enclosures, OpenFlippedTwoSidedAndCrossingSurfacesEncloseNothing) {
   addCap(top);
   addCap(low);
   EXPECT_EQ(closedSurfaces(crossing), 0u);
+}
+
+// A room whose walls have both sides, as games and glTF have them, turned outward; a cupboard in
+// its corner shares parts of edges with it. The edges leave open which sheets belong together.
+TEST(Enclosures, ATwoSidedRoomKeepsItsFurnitureInTheCorner) {
+  for (const bool outward : {true, false}) {
+    for (const double turn : {0.0, 0.7}) {
+      test::SceneBuilder builder;
+      builder.box(builder.surface("room", 0.5, 0, true), {0, 0, 0}, {5, 4, 2.7}, outward);
+      const Index lamp = builder.surface("lamp", 0, 10);
+      builder.level(lamp, 2, 1.7, 3, 2.3, 2.6, false);
+      builder.box(builder.surface("cupboard"), {4.4, 0, 0}, {5, 1.5, 2});
+      Scene scene = builder.scene();
+      const Vec3 axis = glm::normalize(Vec3(1, 2, 3));
+      for (Vec3& v : scene.vertices) v = test::rotated(v, axis, turn);
+      Progress quiet;
+      const PatchMesh mesh = meshScene(scene, {.patches = 100}, quiet).mesh;
+      double of_lamp = 0;
+      for (std::size_t i = 0; i < mesh.size(); ++i) {
+        if (mesh.surface_names[mesh.surface[i]] == "lamp/lamp") of_lamp += mesh.area[i];
+      }
+      EXPECT_NEAR(of_lamp, 0.6, 1e-9) << outward << " " << turn;
+    }
+  }
 }
 
 TEST(Enclosures, ABodyThatFloatsInARoomIsASurfaceOfItsOwn) {

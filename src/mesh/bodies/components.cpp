@@ -80,6 +80,9 @@ class Joiner {
   }
   std::vector<HalfPlane> around(const Edge& edge) const;
   void match(const std::vector<HalfPlane>& ring);
+  int likeness(Index a, Index b) const;
+  void matchCoincident(const std::vector<HalfPlane>& ring, std::vector<std::size_t> closing,
+                       std::vector<std::size_t>& opened, std::vector<bool>& matched);
   void addTriangles(Index sheet, Component& component, int sign) const;
   void close(Component& component, Components& all) const;
 
@@ -120,6 +123,38 @@ std::vector<HalfPlane> Joiner::around(const Edge& edge) const {
   return ring;
 }
 
+/// How likely two sheets belong to one body, where geometry does not tell: 0 to 3.
+int Joiner::likeness(Index a, Index b) const {
+  if (sheets_[a].surface == sheets_[b].surface) return 3;
+  const auto objectOf = [&](Index s) { return scene_.surfaces[sheets_[s].surface].object; };
+  if (objectOf(a) == objectOf(b)) return 2;
+  return isTwoSided(a) == isTwoSided(b) ? 1 : 0;
+}
+
+/// Matches coincident half-planes with the last ones that opened a space; `opened` loses these. If
+/// the last ones coincide with others, geometry leaves the choice: a cupboard in the corner of a
+/// room has its own edges on those of the room.
+void Joiner::matchCoincident(const std::vector<HalfPlane>& ring, std::vector<std::size_t> closing,
+                             std::vector<std::size_t>& opened, std::vector<bool>& matched) {
+  std::size_t first = opened.size() - std::min(opened.size(), closing.size());
+  while (first > 0 && first < opened.size() &&
+         ring[opened[first - 1]].angle == ring[opened[first]].angle) {
+    --first;
+  }
+  for (int wanted = 3; wanted >= 0; --wanted) {
+    for (std::size_t& at : closing) {
+      for (std::size_t k = opened.size(); at != ring.size() && k-- > first;) {
+        const std::size_t partner = opened[k];
+        if (likeness(ring[at].sheet, ring[partner].sheet) < wanted) continue;
+        matched[at] = matched[partner] = true;
+        if (!sets_.unite(ring[at].sheet, ring[partner].sheet, 1)) open_[ring[at].sheet] = true;
+        opened.erase(opened.begin() + std::ptrdiff_t(k));
+        at = ring.size();
+      }
+    }
+  }
+}
+
 /// Matches half-planes like brackets around a circle: a sheet that runs back opens the space behind
 /// it, one that runs forward closes it. Unmatched ones are open borders.
 void Joiner::match(const std::vector<HalfPlane>& ring) {
@@ -132,11 +167,11 @@ void Joiner::match(const std::vector<HalfPlane>& ring) {
       if (k < ring.size()) opened.push_back(at);
       continue;
     }
-    if (opened.empty()) continue;
-    const std::size_t partner = opened.back();
-    opened.pop_back();
-    matched[at] = matched[partner] = true;
-    if (!sets_.unite(ring[at].sheet, ring[partner].sheet, 1)) open_[ring[at].sheet] = true;
+    std::vector<std::size_t> closing;
+    for (std::size_t next = at; next < ring.size() && ring[next].angle == ring[at].angle; ++next) {
+      if (ring[next].forward && !matched[next]) closing.push_back(next);
+    }
+    matchCoincident(ring, std::move(closing), opened, matched);
   }
   for (std::size_t k = 0; k < ring.size(); ++k) {
     if (!matched[k]) open_[ring[k].sheet] = true;
