@@ -28,7 +28,7 @@ std::string largestError(const ElementReport& r, double of_matrix) {
   const double most = std::max({r.interpolation_error, r.ray_error, of_matrix});
   if (most <= 0) return "none";
   if (most == of_matrix) return "the matrix (lower --tolerance)";
-  if (most == r.ray_error) return "the rays of the indirect light";
+  if (most == r.ray_error) return "the rays of the indirect light (lower --element-tolerance)";
   return "interpolation (lower --element-tolerance)";
 }
 

@@ -39,7 +39,9 @@ double ReflectedLight::irradiance(const SurfacePoint& point, const ElementLights
                                   std::span<double> out) const {
   double spread = 0;
   const double error = look(point, set_, out, spread);
-  if (more_ == nullptr || error < 0 || spread <= uneven_) return error;
+  if (more_ == nullptr || error < 0) return error;
+  const double apart = apart_ * total(out);
+  if (spread <= uneven_ && error <= apart * apart) return error;
   ++repeated_;
   std::fill(out.begin(), out.end(), 0.0);
   return look(point, *more_, out, spread);
@@ -57,13 +59,18 @@ double ReflectedLight::look(const SurfacePoint& point, const HemisphereSet& set,
   const double turn = 2 * std::numbers::pi * double(bits >> 11) * 0x1p-53;
   rays_.look({point.position, point.normal, surface_.owners[point.owners]}, set, number, turn,
              ends);
+  // Where facets meet smoothly, rays past the mean normal's horizon end within the body.
+  const bool between_facets = surface_.owners[point.owners].size() > 1;
   std::size_t counted = 0;
   std::size_t counted_first = 0;
   std::size_t behind = 0;
   double squares = 0;
   for (std::size_t k = 0; k < ends.size(); ++k) {
-    if (ends[k].patch == RayEnd::kBlack) ++behind;
     if (ends[k].patch == RayEnd::kOwn) continue;
+    if (ends[k].patch == RayEnd::kBlack) {
+      ++behind;
+      if (between_facets) continue;
+    }
     const bool in_first = set.isFirst(number, k);
     ++counted;
     counted_first += in_first ? 1 : 0;

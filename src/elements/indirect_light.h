@@ -14,9 +14,9 @@
 namespace radiosity {
 
 /// The mean, over cosine-distributed rays, of the radiosity of the surfaces where they end. Rays
-/// that end on their own surface do not count. A point is behind a surface if more than half of its
-/// rays end on black backs. If few rays bring most of the light, as through a door, the mean is
-/// computed again with more rays.
+/// that end on their own surface do not count, nor, where facets meet smoothly, those that end on
+/// black backs. A point is behind a surface if more than half of its rays end there. If few rays
+/// bring most of the light, as through a door, the mean is computed again with more rays.
 class ReflectedLight : public FieldLight {
  public:
   /// Keeps all by reference.
@@ -24,10 +24,11 @@ class ReflectedLight : public FieldLight {
                  const SourceMap& sources, std::span<const double> sky, std::uint64_t seed)
       : surface_(surface), rays_(rays), set_(set), sources_(sources), sky_(sky), seed_(seed) {}
   /// Takes the set `more`, kept by reference, if the standard error of as many random rays would be
-  /// more than `uneven` of their mean.
-  void repeat(const HemisphereSet& more, double uneven) {
+  /// more than `uneven` of their mean, or if the means of two halves are off by more than `apart`.
+  void repeat(const HemisphereSet& more, double uneven, double apart) {
     more_ = &more;
     uneven_ = uneven;
+    apart_ = apart;
   }
 
   std::shared_ptr<const ElementLights> lightsOf(const ElementShape& /*shape*/,
@@ -50,6 +51,7 @@ class ReflectedLight : public FieldLight {
   const HemisphereSet& set_;
   const HemisphereSet* more_ = nullptr;
   double uneven_ = 0;
+  double apart_ = 0;
   const SourceMap& sources_;
   std::span<const double> sky_;  ///< radiance a band, or empty
   std::uint64_t seed_;

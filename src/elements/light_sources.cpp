@@ -56,6 +56,9 @@ constexpr double kTestedShare = 3;
 /// scrambled points have a third of that error; behind a door it is .1 and more.
 constexpr int kMoreRays = 8;
 constexpr double kUneven = 7;
+/// So does a point for which two halves of its rays say that the mean is off by this many
+/// tolerances: around a small bright patch, such as the ceiling above a lamp.
+constexpr double kApart = 2;
 /// Direct light by rays: its steps are not refined below this.
 constexpr double kAimedTolerance = 0.02;
 
@@ -310,7 +313,8 @@ FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double to
   std::optional<HemisphereSet> more;
   ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.sky, options_.seed);
   if (more_rays > rays) {
-    light.repeat(more.emplace(std::size_t(more_rays), options_.seed), kUneven * options_.tolerance);
+    light.repeat(more.emplace(std::size_t(more_rays), options_.seed), kUneven * options_.tolerance,
+                 kApart * options_.tolerance);
   }
   RefinementRule how = rule(tolerance, kIndirectEdge);
   how.least_spread = kTestedSpread * tolerance;

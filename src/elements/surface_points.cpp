@@ -14,6 +14,20 @@ namespace {
 
 /// The largest inset on curved surfaces, as a share of the diagonal.
 constexpr double kLeast = 1e-5;
+/// Of two roots in one plane, one is a sliver if its inset is less than this share of the other's.
+constexpr double kSliver = 0.2;
+
+/// Whether a point in the plane of a convex root lies on it.
+bool isOn(const PatchMesh& mesh, const ElementRoots& roots, std::size_t root, const Vec3& p) {
+  const Vec3& normal = mesh.normal[roots.patch[root]];
+  const std::size_t n = roots.cornerCount(root);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vec3 a = mesh.vertices[roots.corner[root][k]];
+    const Vec3 b = mesh.vertices[roots.corner[root][(k + 1) % n]];
+    if (glm::dot(glm::cross(normal, b - a), p - a) < 0) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -140,6 +154,16 @@ double ElementSurface::insetOf(const PatchMesh& mesh, std::size_t root) const {
   return std::min(inset_.of_diagonal * diagonal, inset_.of_height * glm::length(twice) / longest);
 }
 
+/// Whether one of two roots of one polygon is a sliver. What almost touches has cut it off, as a
+/// frame in front of a wall, so light at their common edge is not that of the larger root.
+bool ElementSurface::besideSliver(const PatchMesh& mesh, std::size_t a, std::size_t b) const {
+  const Index polygon = mesh.polygon[roots.patch[a]];
+  if (polygon == kNone || polygon != mesh.polygon[roots.patch[b]]) return false;
+  const double inset = insetOf(mesh, a);
+  const double other = insetOf(mesh, b);
+  return std::min(inset, other) < kSliver * std::max(inset, other);
+}
+
 void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
   std::vector<RootEdge> all;
   for (Index r = 0; r < roots.size(); ++r) {
@@ -167,6 +191,7 @@ void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
       const Index b = vertex[edge.root][(edge.number + 1) % n];
       const Index patch = roots.patch[edge.root];
       const RootEdge* across = partner(mesh, run, edge, cosine);
+      if (across != nullptr && besideSliver(mesh, edge.root, across->root)) across = nullptr;
       SurfaceEdge fresh;
       if (across != nullptr) {
         tag[edge.root][edge.number] = 0;
@@ -217,10 +242,27 @@ void ElementSurface::insetCorners(const PatchMesh& mesh) {
   }
   for (std::size_t v = 0; v < points.size(); ++v) {
     const double length = glm::length(inward[v]);
-    points[v].position = points[v].place;
+    inward[v] = length > 0 ? inward[v] / length : Vec3(0.0);
     // At a smooth edge, the plane of one facet soon leaves the surface of the other.
     if (points[v].owners >= mesh.polygons.size()) most[v] = std::min(most[v], kLeast * diagonal);
-    if (length > 0) points[v].position += inward[v] * (most[v] / length);
+  }
+  leaveSlivers(mesh, inward, most);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    points[v].position = points[v].place + inward[v] * most[v];
+  }
+}
+
+/// A corner of a sliver and of larger roots goes into the larger ones, as far as these ask for.
+/// What it sees through the gap that cut off the sliver is not the light of the larger root.
+void ElementSurface::leaveSlivers(const PatchMesh& mesh, std::span<const Vec3> inward,
+                                  std::span<double> distance) const {
+  for (Index r = 0; r < roots.size(); ++r) {
+    const double inset = insetOf(mesh, r);
+    for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
+      const Index v = vertex[r][k];
+      if (points[v].owners >= mesh.polygons.size() || inset <= distance[v]) continue;
+      if (isOn(mesh, roots, r, points[v].place + inward[v] * inset)) distance[v] = inset;
+    }
   }
 }
 

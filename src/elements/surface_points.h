@@ -85,7 +85,10 @@ struct ElementSurface {
   void addVertices(const PatchMesh& mesh, const CornerGroups& groups);
   void addEdges(const PatchMesh& mesh, double crease);
   double insetOf(const PatchMesh& mesh, std::size_t root) const;
+  bool besideSliver(const PatchMesh& mesh, std::size_t a, std::size_t b) const;
   void insetCorners(const PatchMesh& mesh);
+  void leaveSlivers(const PatchMesh& mesh, std::span<const Vec3> inward,
+                    std::span<double> distance) const;
   const RootEdge* partner(const PatchMesh& mesh, std::span<const RootEdge> run, const RootEdge& of,
                           double cosine) const;
   Inset inset_;

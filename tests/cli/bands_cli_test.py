@@ -76,9 +76,10 @@ class Bands(CliTest):
         view = ["--camera", "eye=0.5,0.5,0.9;target=0.5,0.5,0", "--width", "64"]
         self.run_program("render", name, "-o", "grey.exr", "-o", "grey.glb", *view)
         self.run_program("render", "box.obj", *SMALL, "-o", "rgb.exr", *view)
-        # Grey is the red of the picture in colours: that band differs by the solver's sweeps alone.
+        # Grey is the red of the picture in colours: that band differs by the solver's sweeps, and by the
+        # noise (.3%) of the few points that take more rays for the sake of another band.
         report = self.report("compare", "grey.exr", "rgb.exr")["comparison"]
-        self.assertLess(report["relative_l2_bands"][0], 1e-5)
+        self.assertLess(report["relative_l2_bands"][0], 5e-4)
         self.assertGreater(report["relative_l2_bands"][1], 0.01)
 
     def test_a_dark_file_is_warned_of_and_a_cure_is_named(self):

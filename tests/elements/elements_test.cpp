@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "elements/surface_points.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/solve.h"
 #include "support/scene_builder.h"
@@ -375,6 +376,34 @@ TEST(Elements, UnevenLightTakesMoreRays) {
     return std::sqrt(squares / norm);
   };
   EXPECT_LT(error(0.01), 0.4 * error(0.5));
+}
+
+/// A board stands on a floor 4 mm off its border, so that a sliver of the floor is behind it.
+/// Vertices that the sliver shares with larger roots, and edges between them, must not stay on the
+/// sliver.
+TEST(Elements, SliversDoNotHoldTheVerticesOfTheirNeighbours) {
+  SceneBuilder builder;
+  builder.level(builder.surface("floor"), 0, 0, 3, 3, 0);
+  builder.box(builder.surface("board"), {1, 0.004, -0.01}, {1.7, 0.04, 1});
+  Progress quiet;
+  const PatchMesh mesh = meshScene(builder.scene(), {.patches = 40}, quiet).mesh;
+  const Inset inset{0.0015, 0.21};
+  const ElementSurface surface(mesh, 30, inset);
+  const double whole = inset.of_diagonal * surface.diagonal;
+  std::size_t large = 0;
+  for (std::size_t r = 0; r < surface.roots.size(); ++r) {
+    const std::size_t n = surface.roots.cornerCount(r);
+    const Index patch = surface.roots.patch[r];
+    if (mesh.normal[patch].z < 0.5 || mesh.centroid[patch].z > 0.5) continue;  // of the board
+    if (mesh.centroid[patch].y < 0.04 && mesh.area[patch] < 0.01) continue;    // a sliver
+    ++large;
+    for (std::size_t k = 0; k < n; ++k) {
+      const SurfacePoint& point = surface.points[surface.vertex[r][k]];
+      const double moved = glm::distance(point.place, point.position);
+      EXPECT_TRUE(moved == 0 || moved > 0.5 * whole) << point.place.x << " " << point.place.y;
+    }
+  }
+  EXPECT_GT(large, 10u);
 }
 
 TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {
