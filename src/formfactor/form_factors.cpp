@@ -63,10 +63,12 @@ std::string secondsText(double seconds) {
 }
 
 /// A look at exact samples its rows. It may take this share of the seconds that exact may take, so
-/// that it stays small beside the work, and this long the first time. If exact is then foreseen to
-/// take no more than kNoFurtherLookSeconds, rays are not looked at.
-constexpr double kLookShare = 0.15;
+/// that it stays small beside the work, and as long as kFirstLookSeconds the first time, then
+/// kLookSeconds. If exact is foreseen to take no more than kNoFurtherLookSeconds, rays are not
+/// looked at.
+constexpr double kLookShare = 0.03;
 constexpr double kFirstLookSeconds = 0.2;
+constexpr double kLookSeconds = 0.75;
 constexpr double kNoFurtherLookSeconds = 0.5;
 
 /// The seconds that exact may take and still be chosen. With shared unknowns it must be the faster
@@ -215,7 +217,7 @@ std::optional<FormFactorPlan> lookAtExact(FormFactorPlan::Prepared& prepared, do
 /// is not the faster one: a look takes about a hundredth of the whole.
 void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   const std::size_t limit = prepared.options.memory_limit;
-  const auto fits = [&](const FormFactorPlan& exact) { return limit == 0 || exact.bytes <= limit; };
+  const auto fits = [&](const FormFactorPlan& one) { return limit == 0 || one.bytes <= limit; };
   std::optional<FormFactorPlan> exact = lookAtExact(prepared, kFirstLookSeconds, progress);
   if (exact && fits(*exact) && exact->seconds <= kNoFurtherLookSeconds) {
     plan = std::move(*exact);
@@ -226,15 +228,18 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
   const double ray_seconds = plan.seconds;
   const std::string ray_tolerance = fmt::format("{:.2g}", plan.tolerance);
   const double most = secondsExactMayTake(prepared, ray_seconds);
-  if (!exact && kLookShare * most > kFirstLookSeconds) {
-    exact = lookAtExact(prepared, kLookShare * most, progress);
+  if (!exact && most > 2 * kLookSeconds) {
+    exact = lookAtExact(prepared, std::max(kLookSeconds, kLookShare * most), progress);
   }
-  if (exact && fits(*exact) && exact->seconds <= most) {
+  const bool smaller = exact && !fits(*exact) && !fits(plan) && exact->bytes < plan.bytes;
+  if (smaller || (exact && fits(*exact) && exact->seconds <= most)) {
     prepared.rays.reset();
+    const std::size_t ray_bytes = plan.bytes;
     plan = std::move(*exact);
     plan.other_seconds = ray_seconds;
-    plan.reason = fmt::format("it takes {}; rays, to {}, would take {}", secondsText(plan.seconds),
-                              ray_tolerance, secondsText(ray_seconds));
+    plan.reason = fmt::format("it takes {}; rays, to {}, would take {}{}",
+                              secondsText(plan.seconds), ray_tolerance, secondsText(ray_seconds),
+                              smaller ? " and " + bytesText(ray_bytes) : "");
     return;
   }
   prepared.scene.reset();
@@ -243,7 +248,8 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
       fmt::format("to {} they take {}; exact would take ", ray_tolerance, secondsText(ray_seconds));
   if (exact) {
     plan.other_seconds = exact->seconds;
-    plan.reason += fmt::format("{} and {}", secondsText(exact->seconds), bytesText(exact->bytes));
+    plan.reason += fmt::format("{} and {}{}", secondsText(exact->seconds), bytesText(exact->bytes),
+                               fits(*exact) ? "" : ", more than --memory-limit");
   } else {
     plan.reason += "longer, as far as it was looked at";
   }

@@ -161,14 +161,28 @@ TEST(Auto, PicksRaysInClutterAtALooseTolerance) {
   EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::exact);
 }
 
-TEST(Auto, PicksRaysIfExactWouldPassTheMemoryLimit) {
-  const PatchMesh mesh = meshNamed("cornell-box", 1000);
-  Progress silent;
-  FormFactorOptions options;
-  options.memory_limit = 1;
-  const FormFactorPlan plan = planFormFactors(mesh, options, silent);
-  EXPECT_EQ(plan.method, FormFactorMethod::rays);
-  EXPECT_THROW(computeFormFactors(plan, silent), RunError);
+TEST(Auto, PicksTheMethodThatKeepsTheMemoryLimit) {
+  for (const char* scene : {"cornell-box", "furnished-room"}) {
+    const PatchMesh mesh = meshNamed(scene, 1000);
+    Progress silent;
+    FormFactorOptions options;
+    const auto bytesOf = [&](FormFactorMethod method) {
+      options.method = method;
+      return planFormFactors(mesh, options, silent).bytes;
+    };
+    const std::size_t exact = bytesOf(FormFactorMethod::exact);
+    const std::size_t rays = bytesOf(FormFactorMethod::rays);
+    const FormFactorMethod smaller =
+        exact < rays ? FormFactorMethod::exact : FormFactorMethod::rays;
+    options.method = FormFactorMethod::automatic;
+    options.memory_limit = (exact + rays) / 2;
+    EXPECT_EQ(planFormFactors(mesh, options, silent).method, smaller) << scene;
+    // If none keeps it, the smaller one says what it needs.
+    options.memory_limit = 1;
+    const FormFactorPlan plan = planFormFactors(mesh, options, silent);
+    EXPECT_EQ(plan.method, smaller) << scene;
+    EXPECT_THROW(computeFormFactors(plan, silent), RunError);
+  }
 }
 
 TEST(Auto, RaysTakeThePlaceOfExactThatTakesFarLongerThanForeseen) {

@@ -220,8 +220,10 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   if (!options.exact_rows.empty()) report.rays.exact_rows = rows_known.size();
   const KnownEntries known(std::move(rows_known), scene.position());
 
-  std::vector<RayRow> rows = castRows(scene, known, RayAim(options), report.rays, progress, journal,
-                                      scratch.get(), processes);
+  RayAim aim(options);
+  aim.foreseen_rays = estimate.rays;
+  std::vector<RayRow> rows =
+      castRows(scene, known, aim, report.rays, progress, journal, scratch.get(), processes);
   noteLoosened(options, report);
   report.closed = scene.provedClosed() || !seesSky(rows);
   result.matrix =

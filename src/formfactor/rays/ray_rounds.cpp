@@ -136,8 +136,14 @@ class Rounds {
     std::stable_sort(todo.begin(), todo.end(), [&](Index a, Index b) {
       return rays[a] - rows_[a].rays > rays[b] - rows_[b].rays;
     });
-    progress_.begin(report_.rounds == 0 ? "first rays" : "form factors", kReplicates * all, "rays",
-                    kReplicates * kept);
+    if (report_.rounds == 0) {
+      progress_.begin("first rays", kReplicates * all, "rays", kReplicates * kept);
+    } else {
+      // One bar for all rounds; the last one may be longer than foreseen.
+      const std::size_t least = report_.rays + kReplicates * all;
+      progress_.begin("form factors", std::max(least, std::size_t(aim_.foreseen_rays)), "rays",
+                      report_.rays + kReplicates * kept);
+    }
     if (processes_ != nullptr) {
       castByAll(todo, rays);
     } else {

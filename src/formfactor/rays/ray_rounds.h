@@ -26,7 +26,8 @@ struct RayAim {
   double tolerance = 0;  ///< error over norm
   /// Rays of all rows together; if the tolerance needs more, it is loosened for all rows alike.
   double most_rays = 0;
-  double sky_weight = 0;  ///< the sky's part in norms: FormFactorOptions::skyWeight()
+  double sky_weight = 0;     ///< the sky's part in norms: FormFactorOptions::skyWeight()
+  double foreseen_rays = 0;  ///< all in all, for progress; 0: unknown
 
   explicit RayAim(const FormFactorOptions& options);
 };

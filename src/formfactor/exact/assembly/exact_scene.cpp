@@ -100,8 +100,11 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
 
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
                     const FormFactorOptions& options, Progress& progress) {
+  progress.begin("trying rows", 1);
   const RowTimes times =
       timeRows(scene, kernels, options.toleranceOf(FormFactorMethod::exact), sample, progress);
+  progress.advance();
+  progress.end();
   return times.busy * (times.visibility + times.unoccluded + times.occluded) /
          double(allowedThreads());
 }
