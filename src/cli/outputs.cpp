@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "base/figure_text.h"
@@ -145,8 +146,11 @@ std::vector<Output> parseOutputs(const Request& request) {
 }
 
 void requireNoFileOfScene(const Request& request) {
-  std::vector<std::string> paths = request.outputs;
-  paths.insert(paths.end(), {request.lightmap, request.patch_table, request.report});
+  std::vector<std::string> paths = {request.lightmap, request.patch_table, request.report};
+  // Results files are looked into for what can be reused, and are no files of scenes.
+  std::ranges::copy_if(request.outputs, std::back_inserter(paths), [&](const std::string& path) {
+    return formatOf(path, request.command) != Format::results;
+  });
   for (const std::string& path : paths) {
     if (path.empty() || sameFile(path, request.input) || !wasFound(path)) continue;
     throw InputError(

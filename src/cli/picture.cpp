@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <optional>
 #include <utility>
 
@@ -93,6 +95,20 @@ void requireColours(const Pipeline& pipeline, const Request& request, const Outp
   }
 }
 
+namespace {
+
+/// The digits with which the camera's places can be given again, also far from the origin: to about
+/// 1e-6 of the distance that it looks at.
+int placeDigits(const Camera& camera) {
+  const Vec3 farthest = glm::max(glm::abs(camera.eye), glm::abs(camera.target));
+  const double size = std::max({farthest.x, farthest.y, farthest.z});
+  const double distance = glm::distance(camera.eye, camera.target);
+  if (!(distance > 0)) return 6;
+  return 6 + int(std::clamp(std::ceil(std::log10(size / distance)), 0.0, 10.0));
+}
+
+}  // namespace
+
 void reportPicture(Report& report, const Picture& picture) {
   const Camera& c = picture.camera;
   const double eye[] = {c.eye.x, c.eye.y, c.eye.z};
@@ -100,8 +116,9 @@ void reportPicture(Report& report, const Picture& picture) {
   const double up[] = {c.up.x, c.up.y, c.up.z};
   report.section("picture", "Picture");
   report.text("camera", "camera", picture.camera_from);
-  report.bands("eye_m", "eye", eye, "m");
-  report.bands("target_m", "target", target, "m");
+  const int digits = placeDigits(c);
+  report.bands("eye_m", "eye", eye, "m", digits);
+  report.bands("target_m", "target", target, "m", digits);
   report.bands("up", "up", up, "");
   report.number("vertical_fov_deg", "vertical field of view", degrees(c.vertical_fov), "deg");
   report.text(

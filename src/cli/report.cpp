@@ -131,10 +131,12 @@ void Report::yesNo(const std::string& key, const std::string& label, bool value)
 }
 
 void Report::bands(const std::string& key, const std::string& label, std::span<const double> values,
-                   const std::string& unit) {
+                   const std::string& unit, int digits) {
   here()[key] = std::vector<double>(values.begin(), values.end());
   std::string text;
-  for (const double value : values) text += fmt::format("{:>13}", numberText(value));
+  for (const double value : values) {
+    text += fmt::format("{:>{}}", numberText(value, digits), digits + 7);
+  }
   figure(label, text + "  " + unit);
 }
 

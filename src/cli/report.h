@@ -33,9 +33,9 @@ class Report {
   void seconds(const std::string& key, const std::string& label, double value);
   void text(const std::string& key, const std::string& label, const std::string& value);
   void yesNo(const std::string& key, const std::string& label, bool value);
-  /// One value for each band.
+  /// One value for each band, or a place. `digits`: that are printed of each.
   void bands(const std::string& key, const std::string& label, std::span<const double> values,
-             const std::string& unit);
+             const std::string& unit, int digits = 6);
 
   /// A series of values, which is only recorded: it is too long for a line.
   void series(const std::string& key, std::span<const double> values);
