@@ -79,7 +79,8 @@ void factorError(Report& report, const FormFactors& factors) {
                 *std::max_element(factors.error.begin(), factors.error.end()));
 }
 
-void warnOfLosses(const HeatBalance& b, double given_off, std::vector<Note>& notes) {
+void warnOfLosses(const HeatBalance& b, FactorsFrom method, double given_off,
+                  std::vector<Note>& notes) {
   const auto worthIt = [&](double watts) { return std::abs(watts) > kWorthWarning * given_off; };
   const auto share = [&](double watts) {
     return fmt::format("{:.3g}% of what all surfaces give off", 100 * std::abs(watts) / given_off);
@@ -92,13 +93,15 @@ void warnOfLosses(const HeatBalance& b, double given_off, std::vector<Note>& not
                      numberText(b.on_backs, 3), share(b.on_backs))});
   }
   if (worthIt(b.imbalance)) {
-    notes.push_back(
-        {Severity::warning,
-         fmt::format(
-             "{} W are not accounted for, {}: rows of form factors do not "
-             "sum to 1 or lack reciprocity; give --closure enforce (hemicube: --symmetrize), "
-             "or a smaller --tolerance",
-             numberText(b.imbalance, 3), share(b.imbalance))});
+    const bool from_elsewhere = method == FactorsFrom::file || method == FactorsFrom::matrix;
+    const char* const cure = from_elsewhere ? "correct the matrix, or its areas (--areas)"
+                             : method == FactorsFrom::hemicube
+                                 ? "give --symmetrize, or a higher --resolution"
+                                 : "give --closure enforce, or a smaller --tolerance";
+    notes.push_back({Severity::warning,
+                     fmt::format("{} W are not accounted for, {}: rows of form factors do not sum "
+                                 "to 1 or lack reciprocity; {}",
+                                 numberText(b.imbalance, 3), share(b.imbalance), cure)});
   }
 }
 
@@ -122,10 +125,10 @@ void noteTemperatures(const HeatBalance& b, double given_off,
   }
 }
 
-void warnings(Report& report, const HeatSummary& s, double given_off,
+void warnings(Report& report, const HeatSummary& s, FactorsFrom method, double given_off,
               const std::vector<SurfaceHeat>& surfaces, const HeatOptions& options) {
   std::vector<Note> notes;
-  warnOfLosses(s.balance, given_off, notes);
+  warnOfLosses(s.balance, method, given_off, notes);
   noteTemperatures(s.balance, given_off, surfaces, options, notes);
   if (s.undetermined > 0) {
     notes.push_back(
@@ -165,7 +168,7 @@ void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& 
     report.text("message", "in words", oneLine(s.message));
     report.yesNo("usable", "usable", s.usable());
   }
-  warnings(report, s, given_off, surfaces, options);
+  warnings(report, s, factors.method, given_off, surfaces, options);
 }
 
 }  // namespace radiosity::cli

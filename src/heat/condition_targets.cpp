@@ -71,7 +71,10 @@ std::string RowTargets::nameOf(Index target) const {
 
 std::vector<Index> RowTargets::named(const std::string& name) const {
   if (const auto found = by_name_.find(name); found != by_name_.end()) return found->second;
-  const std::optional<long long> number = parseInteger(name);
+  // Tables call a row without a name "row 3".
+  constexpr std::string_view kRow = "row ";
+  const std::optional<long long> number =
+      parseInteger(std::string_view(name).substr(name.starts_with(kRow) ? kRow.size() : 0));
   if (!number || *number < 1 || std::size_t(*number) > names_.size()) return {};
   return {Index(*number - 1)};
 }

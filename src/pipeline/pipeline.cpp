@@ -204,8 +204,10 @@ std::shared_ptr<ScratchMemory> Pipeline::memoryOfStoredMatrix() const {
   const std::size_t beside = residentBytes() + matrixWorkingMemory(n, allowedThreads());
   const RowMemory memory = planRowMemory(beside + bytes, beside, bytes, options);
   if (options.memory_limit > 0 && memory.bytes > options.memory_limit) {
-    throw RunError(fmt::format("{}: its form factors take {} of memory, --memory-limit allows {}",
-                               source_, bytesText(memory.bytes), bytesText(options.memory_limit)));
+    throw RunError(fmt::format(
+        "{}: its form factors, {}, take {} of memory together with all else, --memory-limit allows "
+        "{}",
+        source_, bytesText(bytes), bytesText(memory.bytes), bytesText(options.memory_limit)));
   }
   return makeRowMemory(memory, options, n);
 }

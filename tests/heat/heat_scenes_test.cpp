@@ -302,7 +302,7 @@ TEST(HeatConditionsByName, RowsAreFoundByNameOrNumber) {
     return readHeatConditions(names, emissivity, ConditionText{"", "", settings, {}});
   };
   const HeatConditions c =
-      read({"wall.temperature=300", "2.flux=5", "lid.flux=0", "lid.emissivity=.9"});
+      read({"wall.temperature=300", "row 2.flux=5", "lid.flux=0", "lid.emissivity=.9"});
   ASSERT_EQ(c.of_surface.size(), 4u);
   const auto of = [&](std::size_t row) { return c.conditions[c.of_surface[row]]; };
   EXPECT_EQ(of(0).temperature, 300);
