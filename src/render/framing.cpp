@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
 #include <numbers>
 
@@ -31,6 +32,10 @@ constexpr double kEyeHeight = 1.6;  // metres above the floor, if the scene is a
 constexpr double kStanding = 1.1;   // worth of standing at that height
 constexpr double kEnclosed = 0.75;  // share of all directions that end on fronts within a room
 constexpr double kRoom = 1.5;       // worth of being in a room that has an outside too
+/// If the best view has less light than this and most polygons lie within a box of kCrowded of the
+/// scene's diagonal, these are framed.
+constexpr double kDark = 0.05;
+constexpr double kCrowded = 0.1;
 
 /// Turn vectors about the x axis so that the scene's z becomes y, and back.
 Vec3 turnedUp(const Vec3& v) { return {v.x, v.z, -v.y}; }
@@ -50,14 +55,59 @@ Camera turnedBack(Camera camera) {
   return camera;
 }
 
-/// The box around all patches that have an area.
-Box3 boundingBox(const PatchMesh& mesh) {
+/// The box around all patches with an `area` above 0.
+Box3 boundingBox(const PatchMesh& mesh, std::span<const double> area) {
   Box3 box;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (!(mesh.area[i] > 0)) continue;
+    if (!(area[i] > 0)) continue;
     for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
   }
   return box;
+}
+
+/// The box of the middle 60% of all polygons in each direction, and its surroundings.
+Box3 crowdedBox(const PatchMesh& mesh) {
+  std::vector<Vec3> sum(mesh.polygons.size(), Vec3(0.0));
+  std::vector<double> area(sum.size(), 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (mesh.polygon[i] >= sum.size()) continue;
+    sum[mesh.polygon[i]] += mesh.area[i] * mesh.centroid[i];
+    area[mesh.polygon[i]] += mesh.area[i];
+  }
+  Box3 box;
+  constexpr std::size_t kLeft = 5;  // a fifth at either end
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> places;
+    for (std::size_t p = 0; p < sum.size(); ++p) {
+      if (area[p] > 0) places.push_back(sum[p][axis] / area[p]);
+    }
+    if (places.size() < kLeft) return {};
+    std::sort(places.begin(), places.end());
+    box.low[axis] = places[places.size() / kLeft];
+    box.high[axis] = places[places.size() - 1 - places.size() / kLeft];
+  }
+  // Surfaces end beyond their middles, and a wall may be the end of its room.
+  constexpr double kAround = 0.6;
+  const Vec3 size = box.size();
+  const double around = kAround * std::max({size.x, size.y, size.z});
+  return box.grown(around);
+}
+
+/// The areas of patches, 0 for those that are not to be framed: a stray object far away, or the
+/// rest of a ground much larger than what stands on it, would leave the scene a dot in the picture.
+std::vector<double> framedAreas(const PatchMesh& mesh) {
+  std::vector<double> areas(mesh.area.begin(), mesh.area.end());
+  const Box3 crowd = crowdedBox(mesh);
+  const double whole = boundingBox(mesh, mesh.area).diagonal();
+  if (!(crowd.diagonal() > 0 && crowd.diagonal() < kCrowded * whole)) return areas;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const Vec3& c = mesh.centroid[i];
+    const bool inside = glm::all(glm::greaterThanEqual(c, crowd.low)) &&
+                        glm::all(glm::lessThanEqual(c, crowd.high));
+    if (!inside) areas[i] = 0;
+  }
+  const bool any = std::ranges::any_of(areas, [](double area) { return area > 0; });
+  return any ? areas : std::vector<double>(mesh.area.begin(), mesh.area.end());
 }
 
 /// A camera to try, and its worth apart from the view.
@@ -71,9 +121,11 @@ struct Candidate {
 struct LitMesh {
   const PatchMesh& mesh;
   const PointRays rays;
+  std::vector<double> area;        ///< N, of patches that are to be framed; 0: not
   std::vector<double> brightness;  ///< N, 0 to 1
 
-  LitMesh(const PatchMesh& patches, std::span<const double> light) : mesh(patches), rays(patches) {
+  LitMesh(const PatchMesh& patches, std::span<const double> light)
+      : mesh(patches), rays(patches), area(patches.area) {
     brightness.assign(mesh.size(), 1.0);
     const double typical = light.empty() ? 0 : typicalLight(mesh, light);
     if (!(typical > 0)) return;
@@ -96,13 +148,14 @@ struct Glimpse {
 /// over their area. `seen`: the visible area of each patch. With the root, a tenth of the ceiling
 /// counts as a third of it: a view that shows a part of everything wins over one that shows all of
 /// half the scene.
-double shown(const PatchMesh& mesh, const std::vector<double>& seen) {
+double shown(const LitMesh& scene, const std::vector<double>& seen) {
+  const PatchMesh& mesh = scene.mesh;
   std::vector<std::array<double, 2>> polygons;  // area, area seen
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (!(mesh.area[i] > 0)) continue;
+    if (!(scene.area[i] > 0)) continue;
     if (mesh.polygon[i] >= polygons.size()) polygons.resize(mesh.polygon[i] + 1, {0.0, 0.0});
-    polygons[mesh.polygon[i]][0] += mesh.area[i];
-    polygons[mesh.polygon[i]][1] += std::min(seen[i], mesh.area[i]);
+    polygons[mesh.polygon[i]][0] += scene.area[i];
+    polygons[mesh.polygon[i]][1] += std::min(seen[i], scene.area[i]);
   }
   double total = 0;
   double sum = 0;
@@ -153,7 +206,7 @@ Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double d
     ++glimpse.fronts;
     glimpse.lit += scene.brightness[patch];
   }
-  glimpse.shown = shown(mesh, seen);
+  glimpse.shown = shown(scene, seen);
   if (glimpse.fronts > 0) glimpse.lit /= glimpse.fronts;
   glimpse.fronts /= double(width) * height;
   glimpse.near /= double(width) * height;
@@ -262,7 +315,7 @@ std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box3& box, 
   Vec3 middle(0.0);
   double total = 0;
   for (std::size_t i = 0; i < scene.mesh.size(); ++i) {
-    const double weight = scene.mesh.area[i] * scene.brightness[i];
+    const double weight = scene.area[i] * scene.brightness[i];
     middle += weight * scene.mesh.centroid[i];
     total += weight;
   }
@@ -281,9 +334,10 @@ std::vector<Candidate> viewpointsAtLight(const LitMesh& scene, const Box3& box, 
   return candidates;
 }
 
-/// A camera that looks at the box's centre from `direction`, so far away that every vertex is in
-/// the picture.
-Camera framed(const PatchMesh& mesh, const Box3& box, const Vec3& direction, double aspect) {
+/// A camera that looks at the box's centre from `direction`, so far away that every vertex that is
+/// to be framed is in the picture.
+Camera framed(const LitMesh& scene, const Box3& box, const Vec3& direction, double aspect) {
+  const PatchMesh& mesh = scene.mesh;
   Camera camera;
   camera.target = box.at(Vec3(0.5));
   camera.vertical_fov = kOutsideFov * kDegree;
@@ -292,7 +346,7 @@ Camera framed(const PatchMesh& mesh, const Box3& box, const Vec3& direction, dou
   const double tan_up = kMargin * std::tan(camera.vertical_fov / 2);
   double distance = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (!(mesh.area[i] > 0)) continue;
+    if (!(scene.area[i] > 0)) continue;
     for (const Index v : mesh.outline(i)) {
       const Vec3 p = mesh.vertices[v] - camera.target;
       const double beside =
@@ -306,7 +360,7 @@ Camera framed(const PatchMesh& mesh, const Box3& box, const Vec3& direction, dou
 
 /// Straight on and level first (an open box, a plate), then from the side and above (a solid, a
 /// scene on a floor), at last from below.
-std::vector<Candidate> viewpointsOutside(const PatchMesh& mesh, const Box3& box, double aspect) {
+std::vector<Candidate> viewpointsOutside(const LitMesh& scene, const Box3& box, double aspect) {
   std::vector<Candidate> candidates;
   for (const double elevation : {0.0, 20.0, 40.0, -20.0, -40.0}) {
     for (const double azimuth :
@@ -314,7 +368,7 @@ std::vector<Candidate> viewpointsOutside(const PatchMesh& mesh, const Box3& box,
       const Vec3 direction(std::sin(azimuth * kDegree) * std::cos(elevation * kDegree),
                            std::sin(elevation * kDegree),
                            std::cos(azimuth * kDegree) * std::cos(elevation * kDegree));
-      candidates.push_back({framed(mesh, box, direction, aspect), elevation < 0 ? kBelow : 1.0});
+      candidates.push_back({framed(scene, box, direction, aspect), elevation < 0 ? kBelow : 1.0});
     }
   }
   return candidates;
@@ -339,7 +393,7 @@ Scored standInside(const LitMesh& scene, const Box3& box, bool closed, double as
 Scored standOutside(const LitMesh& scene, const Box3& box, double aspect) {
   const double diagonal = glm::length(box.size());
   return best(
-      viewpointsOutside(scene.mesh, box, aspect),
+      viewpointsOutside(scene, box, aspect),
       [&](const Camera& camera) {
         const Glimpse glimpse = look(scene, camera, aspect, diagonal);
         return glimpse.shown * glimpse.lit;
@@ -350,6 +404,16 @@ Scored standOutside(const LitMesh& scene, const Box3& box, double aspect) {
 Camera named(Camera camera, const char* name) {
   camera.name = name;
   return camera;
+}
+
+/// The best camera for what is to be framed.
+Camera bestCamera(const LitMesh& scene, const Box3& box, bool closed, double aspect) {
+  const Scored inside = standInside(scene, box, closed, aspect);
+  if (closed && inside.score > 0) return named(inside.camera, "framed from inside");
+  const Scored outside = standOutside(scene, box, aspect);
+  if (kRoom * inside.score > outside.score) return named(inside.camera, "framed from inside");
+  return named(outside.score > 0 ? outside.camera : framed(scene, box, Vec3(0, 0, 1), aspect),
+               "framed from outside");
 }
 
 }  // namespace
@@ -374,15 +438,14 @@ Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
   if (!(aspect > 0) || !std::isfinite(aspect)) {
     throw InputError("framing: the picture's aspect ratio must be positive");
   }
-  const Box3 box = boundingBox(mesh);
-  if (!(glm::length(box.size()) < std::numeric_limits<double>::infinity())) return {};  // empty
-  const LitMesh scene(mesh, light);
-  const Scored inside = standInside(scene, box, closed, aspect);
-  if (closed && inside.score > 0) return named(inside.camera, "framed from inside");
-  const Scored outside = standOutside(scene, box, aspect);
-  if (kRoom * inside.score > outside.score) return named(inside.camera, "framed from inside");
-  return named(outside.score > 0 ? outside.camera : framed(mesh, box, Vec3(0, 0, 1), aspect),
-               "framed from outside");
+  const Box3 box = boundingBox(mesh, mesh.area);
+  if (!(box.diagonal() < std::numeric_limits<double>::infinity())) return {};  // empty
+  LitMesh scene(mesh, light);
+  Camera camera = bestCamera(scene, box, closed, aspect);
+  if (look(scene, camera, aspect, box.diagonal()).lit >= kDark) return camera;
+  scene.area = framedAreas(mesh);
+  if (scene.area == mesh.area) return camera;
+  return bestCamera(scene, boundingBox(mesh, scene.area), closed, aspect);
 }
 
 }  // namespace radiosity

@@ -268,6 +268,25 @@ TEST(FramingCamera, LooksTowardsTheLitRoom) {
   }
 }
 
+/// Without light in its view, the camera leaves out what is far from nearly all polygons.
+TEST(FramingCamera, AnObjectFarAwayIsLeftOutIfNothingLitWouldBeSeen) {
+  MeshBuilder builder;
+  for (int x = 0; x < 3; ++x) {
+    for (int y = 0; y < 3; ++y) {
+      builder.box("block", {2.0 * x, 2.0 * y, 0}, {2.0 * x + 1, 2.0 * y + 1, 1}, 1, false);
+    }
+  }
+  builder.box("stray", {3000, 3000, 0}, {3001, 3001, 1}, 1, false);
+  const PatchMesh mesh = builder.build();
+  std::vector<double> light(mesh.size(), 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (mesh.centroid[i].x < 100 && mesh.normal[i].z > 0.5) light[i] = 1;
+  }
+  const Camera near = framingCamera(mesh, false, 1.5, light, Up::z);
+  EXPECT_LT(glm::distance(near.eye, Vec3(2.5, 2.5, 0.5)), 30);
+  EXPECT_LT(glm::distance(near.target, Vec3(2.5, 2.5, 0.5)), 5);
+}
+
 TEST(FramingCamera, NeedsALightValueForEachPatch) {
   const PatchMesh mesh = room({1, 1, 1}, false);
   EXPECT_THROW(framingCamera(mesh, true, 1, std::vector<double>(3, 1.0)), InputError);
