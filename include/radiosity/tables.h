@@ -80,8 +80,8 @@ void checkView3dRows(const std::string& path, const NamedFactors& rows);
 
 /// Comma-separated (RFC 4180), with a header. Wide: name, area_m2, a column a receiver, the sky's,
 /// backs, sum (of these; 1 except for errors), error (of the row), reciprocity_m2 (the row's
-/// largest residual). Long: from, to, form_factor, error, reciprocity_m2. Without error figures
-/// their columns are left out.
+/// largest residual). Long: from, to, area_m2, form_factor, error, reciprocity_m2. Without error
+/// figures their columns are left out.
 void writeFactorsCsv(const std::string& path, const NamedFactors& factors, TableLayout layout,
                      Progress& progress);
 /// The same as one object: names, area_m2, error, sky_name and, wide, form_factors (N x N), sky,

@@ -45,7 +45,7 @@ void writeWideCsv(CheckedFile& file, const NamedFactors& factors, Progress& prog
       });
 }
 
-void writeTallCsv(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
+void writeLongCsv(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   const bool has_error = !factors.error.empty();
   file.write(
       fmt::format("from,to,area_m2,form_factor{},reciprocity_m2\n", has_error ? ",error" : ""));
@@ -78,7 +78,7 @@ void writeFactorsCsv(const std::string& path, const NamedFactors& factors, Table
   if (layout == TableLayout::wide) {
     writeWideCsv(file, factors, progress);
   } else {
-    writeTallCsv(file, factors, progress);
+    writeLongCsv(file, factors, progress);
   }
   file.commit();
 }

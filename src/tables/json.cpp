@@ -49,7 +49,7 @@ void writeWideJson(CheckedFile& file, const NamedFactors& factors, Progress& pro
               [&](std::size_t a, std::size_t b) { return factors.reciprocityResidual(a, b); });
 }
 
-void writeTallJson(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
+void writeLongJson(CheckedFile& file, const NamedFactors& factors, Progress& progress) {
   const auto label = [&](std::size_t a) {
     return factors.numbered ? nlohmann::json(a) : nlohmann::json(factors.names[a]);
   };
@@ -89,7 +89,7 @@ void writeFactorsJson(const std::string& path, const NamedFactors& factors, Tabl
   if (layout == TableLayout::wide) {
     writeWideJson(file, factors, progress);
   } else {
-    writeTallJson(file, factors, progress);
+    writeLongJson(file, factors, progress);
   }
   file.write("\n}\n");
   file.commit();

@@ -89,7 +89,7 @@ std::string wide(const NamedFactors& factors, int digits, std::size_t most) {
   return table.text(1);
 }
 
-std::string tall(const NamedFactors& factors, int digits, std::size_t most) {
+std::string longRows(const NamedFactors& factors, int digits, std::size_t most) {
   Cells header = {"from", "to", "area m^2", "F"};
   if (!factors.error.empty()) header.push_back("error");
   Table table(std::move(header), most);
@@ -116,7 +116,8 @@ std::string tall(const NamedFactors& factors, int digits, std::size_t most) {
 std::string factorsMarkdown(const NamedFactors& factors, TableLayout layout, int digits,
                             std::size_t most) {
   requireDistinctNames("table", factors);
-  return layout == TableLayout::wide ? wide(factors, digits, most) : tall(factors, digits, most);
+  return layout == TableLayout::wide ? wide(factors, digits, most)
+                                     : longRows(factors, digits, most);
 }
 
 void writeFactorsMarkdown(const std::string& path, const NamedFactors& factors,

@@ -233,9 +233,9 @@ class FailedRuns(CliTest):
 
 class TimeLimit(CliTest):
     def test_form_factors_that_would_take_longer_are_refused_with_a_cure(self):
-        line = self.refuse("factors", "box.obj", *LONG, "--time-limit", "10s", "-o", "f.h5",
+        line = self.refuse("factors", "box.obj", *LONG, "--time-limit", "60s", "-o", "f.h5",
                            "--quiet", code=1)
-        self.assertRegex(line, r"form factors would take about .*, and --time-limit 10 s leaves "
+        self.assertRegex(line, r"form factors would take about .*, and --time-limit 1 min 0 s leaves "
                                r".* s; for less: ")
 
     def test_a_run_out_of_time_stops_and_writes_nothing(self):
