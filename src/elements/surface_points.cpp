@@ -43,6 +43,7 @@ ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset
     : diagonal(boxOf(mesh.vertices).diagonal()), roots(elementRoots(mesh)), inset_(inset) {
   for (Index p = 0; p < mesh.polygons.size(); ++p) owners.push_back({p});
   addVertices(mesh, cornerGroups(mesh, crease));
+  for (std::size_t r = 0; r < roots.size(); ++r) insets_.push_back(findInset(mesh, r));
   addEdges(mesh, crease);
   insetCorners(mesh);
 }
@@ -139,7 +140,7 @@ const ElementSurface::RootEdge* ElementSurface::partner(const PatchMesh& mesh,
   return found;
 }
 
-double ElementSurface::insetOf(const PatchMesh& mesh, std::size_t root) const {
+double ElementSurface::findInset(const PatchMesh& mesh, std::size_t root) const {
   const std::size_t n = roots.cornerCount(root);
   double longest = 0;
   Vec3 twice(0.0);
@@ -159,8 +160,8 @@ double ElementSurface::insetOf(const PatchMesh& mesh, std::size_t root) const {
 bool ElementSurface::besideSliver(const PatchMesh& mesh, std::size_t a, std::size_t b) const {
   const Index polygon = mesh.polygon[roots.patch[a]];
   if (polygon == kNone || polygon != mesh.polygon[roots.patch[b]]) return false;
-  const double inset = insetOf(mesh, a);
-  const double other = insetOf(mesh, b);
+  const double inset = insets_[a];
+  const double other = insets_[b];
   return std::min(inset, other) < kSliver * std::max(inset, other);
 }
 
@@ -204,7 +205,7 @@ void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
         const Vec3 along = points[b].place - points[a].place;
         const double length = glm::length(along);
         if (length > 0) {
-          fresh.inset = glm::cross(mesh.normal[patch], along / length) * insetOf(mesh, edge.root);
+          fresh.inset = glm::cross(mesh.normal[patch], along / length) * insets_[edge.root];
         }
       }
       edges.edge(a, b, tag[edge.root][edge.number], fresh);
@@ -220,7 +221,7 @@ void ElementSurface::insetCorners(const PatchMesh& mesh) {
   std::vector<std::uint8_t> border(points.size(), 0);
   for (Index r = 0; r < roots.size(); ++r) {
     const auto n = Index(roots.cornerCount(r));
-    const double inset = insetOf(mesh, r);
+    const double inset = insets_[r];
     for (Index k = 0; k < n; ++k) {
       most[vertex[r][k]] = std::min(most[vertex[r][k]], inset);
       if (tag[r][k] == 0) continue;
@@ -257,7 +258,7 @@ void ElementSurface::insetCorners(const PatchMesh& mesh) {
 void ElementSurface::leaveSlivers(const PatchMesh& mesh, std::span<const Vec3> inward,
                                   std::span<double> distance) const {
   for (Index r = 0; r < roots.size(); ++r) {
-    const double inset = insetOf(mesh, r);
+    const double inset = insets_[r];
     for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
       const Index v = vertex[r][k];
       if (points[v].owners >= mesh.polygons.size() || inset <= distance[v]) continue;

@@ -84,7 +84,7 @@ struct ElementSurface {
   struct RootEdge;
   void addVertices(const PatchMesh& mesh, const CornerGroups& groups);
   void addEdges(const PatchMesh& mesh, double crease);
-  double insetOf(const PatchMesh& mesh, std::size_t root) const;
+  double findInset(const PatchMesh& mesh, std::size_t root) const;
   bool besideSliver(const PatchMesh& mesh, std::size_t a, std::size_t b) const;
   void insetCorners(const PatchMesh& mesh);
   void leaveSlivers(const PatchMesh& mesh, std::span<const Vec3> inward,
@@ -92,6 +92,7 @@ struct ElementSurface {
   const RootEdge* partner(const PatchMesh& mesh, std::span<const RootEdge> run, const RootEdge& of,
                           double cosine) const;
   Inset inset_;
+  std::vector<double> insets_;  ///< R, metres
   Index ownersOf(std::vector<Index> polygons);
 };
 

@@ -322,7 +322,12 @@ double HeatSolve::limited(std::size_t n, double step) {
 
 /// Computes temperatures from the irradiance of their nodes. Errors: InputError if more heat is
 /// taken out of a node than it can take up.
-void HeatSolve::step(const HeatSystem& s, const HeatFields& fields) {
+void HeatSolve::step(const HeatSystem& s, HeatFields& fields) {
+  if (cold_) {
+    std::ranges::fill(x_, 0.0);
+    std::ranges::fill(fields.radiosity, 0.0);
+    return place();
+  }
   const double scale = largest(fields.radiosity);
   const bool linear = isLinear();
   for (std::size_t n = 0; n < x_.size(); ++n) {
@@ -333,13 +338,13 @@ void HeatSolve::step(const HeatSystem& s, const HeatFields& fields) {
         heat += s.absorbs[i * width_ + b] * fields.irradiance[i * width_ + b];
       }
     }
-    const double next = cold_ ? 0 : x_[n] + limited(n, heat / gain_[n]);
+    const double next = x_[n] + limited(n, heat / gain_[n]);
     const double floor = linear ? 0 : x_[n] * kLargestFall;
     const double off = linear ? -next : floor - next;
     const double nothing = linear ? options_.tolerance * scale : 0;
     const bool frozen = linear || x_[n] < std::min(1e-12, 1e-3 * options_.tolerance) * scale;
-    if (!cold_ && frozen && off > nothing) refuseCold(n);
-    x_[n] = cold_ ? 0 : std::max(next, floor);
+    if (frozen && off > nothing) refuseCold(n);
+    x_[n] = std::max(next, floor);
   }
   place();
 }
@@ -398,7 +403,6 @@ HeatSolution HeatSolve::run() {
     fields = solveHeatSystem(factors_.matrix, s, fields.irradiance, tolerance, progress_);
     products += fields.products;
     step(s, fields);
-    if (cold_) std::ranges::fill(fields.radiosity, 0.0);
     residuals = this->residuals(fields);
     ++iterations;
   } while (residuals.worst() > options_.tolerance && std::isfinite(residuals.worst()) &&

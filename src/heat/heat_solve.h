@@ -54,7 +54,7 @@ class HeatSolve {
   HeatSystem system(const std::vector<double>& irradiance);
   void linearize(std::size_t n, const std::vector<double>& irradiance, HeatSystem& s);
   std::vector<double> emissionSlopes(std::size_t n, const std::vector<double>& irradiance) const;
-  void step(const HeatSystem& s, const HeatFields& fields);
+  void step(const HeatSystem& s, HeatFields& fields);
   double limited(std::size_t n, double step);
   Residuals residuals(HeatFields& fields) const;
   HeatSolution solutionOf(HeatFields fields) const;
