@@ -50,17 +50,19 @@ double emissivityValue(const std::string& origin, std::string_view text) {
   return value;
 }
 
+[[noreturn]] void failForForm(const std::string& origin, std::string_view text) {
+  fail(origin, fmt::format("emissivity `{}` is neither one number nor a table like 300:0.1 "
+                           "800:0.25 (kelvin:emissivity), nor the word material",
+                           text));
+}
+
 /// "0.8", or a table "300:0.1 800:0.25".
 Emissivity parseEmissivity(const std::string& origin, std::string_view text) {
   Emissivity emissivity;
   for (const std::string_view word : splitWords(text)) {
     const std::size_t colon = word.find(':');
     if (colon == std::string_view::npos) {
-      if (splitWords(text).size() != 1) {
-        fail(origin, fmt::format("emissivity `{}` is neither one number nor a table like 300:0.1 "
-                                 "800:0.25 (kelvin:emissivity)",
-                                 text));
-      }
+      if (splitWords(text).size() != 1 || !parseNumber(word)) failForForm(origin, text);
       emissivity.values = {emissivityValue(origin, word)};
       return emissivity;
     }

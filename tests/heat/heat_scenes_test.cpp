@@ -334,6 +334,7 @@ TEST(HeatConditionsByName, WrongConditionsAreNamed) {
   says({"lid.temperature"}, "is not NAME.PROPERTY=VALUE");
   says({"lid.temperature=-20"}, "temperatures are in kelvin");
   says({"lid.emissivity=1.2"}, "emissivity 1.2 is not within 0 and 1");
+  says({"lid.emissivity=materail"}, "`materail` is neither one number nor a table like");
   says({"lid.emissivity=300:0.1 200:0.2"}, "do not increase");
   says({"*.power=5"}, "give them by name");
   says({"*.emissivity=.5", "*.flux=0", "shell.power=60", "walls.emissivity=.1"},
