@@ -79,13 +79,16 @@ HeatOptions heatOptions(const py::dict& given) {
   return options;
 }
 
+/// The names of the rows of a matrix from elsewhere, empty for a row without one.
+std::vector<std::string> rowNames(const FactorsHandle& factors) {
+  std::vector<std::string> names = factors.names;
+  names.resize(factors.factors.matrix.size());
+  return names;
+}
+
 /// Of surfaces, or of the rows of a matrix from elsewhere.
 HeatConditions conditionsOf(const FactorsHandle& factors, const ConditionText& text) {
-  if (!factors.mesh) {
-    std::vector<std::string> names = factors.names;
-    names.resize(factors.factors.matrix.size());
-    return readHeatConditions(names, {}, text);
-  }
+  if (!factors.mesh) return readHeatConditions(rowNames(factors), {}, text);
   if (!factors.mesh->scene) {
     throw InputError("heat: the results file has no scene, whose surfaces have names");
   }
@@ -150,12 +153,10 @@ std::shared_ptr<HeatHandle> heatOfRows(std::shared_ptr<FactorsHandle> factors,
 
 py::list heatTable(const HeatHandle& heat) {
   const FactorsHandle& of = *heat.factors;
-  std::vector<std::string> names = of.names;
-  names.resize(of.factors.matrix.size());
   py::list list;
   for (const SurfaceHeat& surface :
        of.mesh ? heatBySurface(heat.solution, of.mesh->result.mesh, of.factors)
-               : heatByName(heat.solution, names, of.factors)) {
+               : heatByName(heat.solution, rowNames(of), of.factors)) {
     list.append(dictOf(surface));
   }
   return list;
