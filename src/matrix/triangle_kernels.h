@@ -16,7 +16,8 @@ inline constexpr int kMaxBands = 4;
 inline constexpr std::size_t kMaxRows = 8;
 
 /// The running sums for each row and band. The product at place q is added to sum q modulo kSums,
-/// in the order of places, and the sums are added up in a fixed order. So every vector length and
+/// in the order of places and rounded once (a fused multiply-add), and the sums are added up in a
+/// fixed order. So every vector length and
 /// any number of rows at once give the same bits.
 inline constexpr std::size_t kSums = 8;
 
@@ -46,7 +47,7 @@ struct TriangleKernels {
   const char* target;  ///< instruction set
   /// sums[r * bands + b] = sum over row r of value * x_b[place].
   void (*gather)(const RowBlock& block, const RowOperands& operands, double* sums);
-  /// z_b[place] += value * factor[r * bands + b], row after row.
+  /// z_b[place] += value * factor[r * bands + b], rounded once, row after row.
   void (*hand_on)(const RowBlock& block, const RowOperands& operands, const double* factor);
   /// Does both in one pass. Here several rows at once are faster than one after the other.
   void (*gather_and_hand_on)(const RowBlock& block, const RowOperands& operands,

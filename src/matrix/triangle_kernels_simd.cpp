@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "matrix/run_row.h"
@@ -43,6 +44,25 @@ constexpr std::size_t kCacheLine = 64;  // bytes
 Vector load(const double* values) { return hn::LoadU(Doubles(), values); }
 Vector load(const float* values) {
   return hn::PromoteTo(Doubles(), hn::LoadU(hn::Rebind<float, Doubles>(), values));
+}
+
+/// a * b + c, rounded once on every instruction set: those without such an instruction take a
+/// function for it.
+Vector fusedMultiplyAdd(Vector a, Vector b, Vector c) {
+#if HWY_NATIVE_FMA
+  return hn::MulAdd(a, b, c);
+#else
+  const Doubles d;
+  HWY_ALIGN double factors[2][kWidth];
+  HWY_ALIGN double sums[kWidth];
+  hn::Store(a, d, factors[0]);
+  hn::Store(b, d, factors[1]);
+  hn::Store(c, d, sums);
+  for (std::size_t lane = 0; lane < kWidth; ++lane) {
+    sums[lane] = std::fma(factors[0][lane], factors[1][lane], sums[lane]);
+  }
+  return hn::Load(d, sums);
+#endif
 }
 
 /// The state of a walk along a row: the next value, and the number `left` of consecutive ones.
@@ -147,11 +167,11 @@ void walkAlone(Walk<kBands, Value>& walk, std::size_t r, std::size_t stop) {
     for (int b = 0; b < kBands; ++b) {
       if constexpr (kGather) {
         const Vector from = hn::LoadU(d, x + std::size_t(b) * x_stride + place);
-        sum[b][v] = hn::Add(sum[b][v], hn::Mul(value, from));
+        sum[b][v] = fusedMultiplyAdd(value, from, sum[b][v]);
       }
       if constexpr (kHandOn) {
         double* to = z + std::size_t(b) * z_stride + place;
-        hn::StoreU(hn::Add(hn::LoadU(d, to), hn::Mul(value, scale[b])), d, to);
+        hn::StoreU(fusedMultiplyAdd(value, scale[b], hn::LoadU(d, to)), d, to);
       }
     }
   };
@@ -219,8 +239,8 @@ void walkTogether(Walk<kBands, Value>& walk, std::size_t r, std::size_t v, std::
       double* to = z + std::size_t(b) * z_stride + m;
       Vector handed = hn::LoadU(d, to);
       for (std::size_t i = 0; i < kRows; ++i) {
-        sum[i][b] = hn::Add(sum[i][b], hn::Mul(value[i], from));
-        handed = hn::Add(handed, hn::Mul(value[i], scale[i][b]));
+        sum[i][b] = fusedMultiplyAdd(value[i], from, sum[i][b]);
+        handed = fusedMultiplyAdd(value[i], scale[i][b], handed);
       }
       hn::StoreU(handed, d, to);
     }

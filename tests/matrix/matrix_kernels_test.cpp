@@ -70,7 +70,8 @@ struct Block {
       forRuns(rows[r], [&](std::size_t offset, const auto* values, std::size_t count) {
         for (std::size_t k = 0; k < count; ++k) {
           const std::size_t place = first + r + offset + k;
-          s[place % kSums] += double(values[k]) * x[m % std::size_t(bands) * stride + place];
+          double& sum = s[place % kSums];
+          sum = std::fma(double(values[k]), x[m % std::size_t(bands) * stride + place], sum);
         }
       });
       all[m] = ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
@@ -83,7 +84,9 @@ struct Block {
       const std::size_t r = m / std::size_t(bands);
       double* to = &out[m % std::size_t(bands) * stride + first + r];
       forRuns(rows[r], [&](std::size_t offset, const auto* values, std::size_t count) {
-        for (std::size_t k = 0; k < count; ++k) to[offset + k] += double(values[k]) * factor[m];
+        for (std::size_t k = 0; k < count; ++k) {
+          to[offset + k] = std::fma(double(values[k]), factor[m], to[offset + k]);
+        }
       });
     }
     return out;
