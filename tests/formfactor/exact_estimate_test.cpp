@@ -186,7 +186,7 @@ TEST(Auto, PicksTheMethodThatKeepsTheMemoryLimit) {
 }
 
 TEST(Auto, RaysTakeThePlaceOfExactThatTakesFarLongerThanForeseen) {
-  const PatchMesh mesh = meshNamed("cornell-box", 1000);
+  const PatchMesh mesh = meshNamed("cornell-box", 300);
   Progress silent;
   const FormFactorOptions options;
   FormFactorPlan plan = planFormFactors(mesh, options, silent);
