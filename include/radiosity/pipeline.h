@@ -193,6 +193,9 @@ class Pipeline {
   /// computeElements().
   SurfaceLight pointLight(std::span<const std::uint8_t> wanted = {});
   SurfaceLight gatheredLight();
+  /// Materials at points of the patches `wanted` (all if empty), where textures or colours of
+  /// vertices change them; null if they do not.
+  std::shared_ptr<const PointMaterials> pointMaterials(std::span<const std::uint8_t> wanted = {});
   /// `patch`: for Quantity::form_factor, below N.
   ScalarField field(Quantity quantity, std::size_t patch = 0);
 

@@ -19,6 +19,7 @@
 #include "radiosity/patch_mesh.h"
 #include "radiosity/pipeline.h"
 #include "radiosity/point_factors.h"
+#include "radiosity/point_materials.h"
 #include "radiosity/render.h"
 #include "radiosity/results.h"
 #include "radiosity/row_journal.h"

@@ -10,6 +10,7 @@
 #include "radiosity/base.h"
 #include "radiosity/elements.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/point_materials.h"
 #include "radiosity/scene.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
@@ -97,6 +98,9 @@ struct SurfaceLight {
   std::shared_ptr<const LightAtPoints> points;  ///< for gatherRadiance(); or null
   std::vector<double> reflectance;              ///< N * bands, with either of these two
   std::vector<double> emission;                 ///< likewise, W/m^2
+  /// With three bands and either of these two: what replaces reflectance and emission where they
+  /// vary over a patch; or null: means over patches are drawn.
+  std::shared_ptr<const PointMaterials> materials;
 };
 
 /// N: how bright the reflected light B - E is, at least 0, W/m^2: its luminance, or the sum of

@@ -110,6 +110,7 @@ SurfaceLight mixedSurfaces(Session& session, Pipeline& pipeline, const MixedLigh
   const std::vector<double>& irradiance = mix.solution.irradiance;
   light.reflectance = mix.materials.reflectance;
   light.emission = mix.materials.emission;
+  light.materials = pipeline.pointMaterials(wanted);
   if (session.request.final_gather) {
     light.points = std::make_shared<const LightAtPoints>(mesh, mix.materials, irradiance, options,
                                                          wanted, session.progress);

@@ -102,9 +102,12 @@ SurfaceLight litSurfaces(Session& session, Pipeline& pipeline, const Picture& pi
   }
   if (mix) return mixedSurfaces(session, pipeline, *mix, elements.shown, wanted);
   if (!elements.shown) return pipeline.solvedLight();
-  if (session.request.final_gather) return pipeline.pointLight(wanted);
-  SurfaceLight light = pipeline.elementLight(wanted);
-  summarizeElements(session.report, *light.elements, pipeline.factors());
+  SurfaceLight light =
+      session.request.final_gather ? pipeline.pointLight(wanted) : pipeline.elementLight(wanted);
+  if (light.elements) {
+    summarizeElements(session.report, *light.elements, pipeline.factors());
+  }
+  light.materials = pipeline.pointMaterials(wanted);
   return light;
 }
 

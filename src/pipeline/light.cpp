@@ -69,6 +69,12 @@ SurfaceLight Pipeline::pointLight(std::span<const std::uint8_t> wanted) {
   return light;
 }
 
+std::shared_ptr<const PointMaterials> Pipeline::pointMaterials(
+    std::span<const std::uint8_t> wanted) {
+  if (hasOwnMaterials()) return nullptr;
+  return radiosity::pointMaterials(scene(), made(results_.mesh).mesh, materialsOfMesh(), wanted);
+}
+
 SurfaceLight Pipeline::gatheredLight() {
   const Gathered& light = gathered();
   const PatchMesh& patches = made(results_.mesh).mesh;

@@ -221,15 +221,20 @@ void takeSize(const KeywordOptions& take, const std::optional<Camera>& camera,
   if (!take.has("width") && take.has("height")) options.width = otherSide(options.height * aspect);
 }
 
-/// Adds elements of the visible surfaces, like the command line.
-void addElements(const PatchMesh& mesh, const SolutionHandle& light, const Camera& camera,
+/// Adds elements of the visible surfaces, like the command line; of a scene's own materials also
+/// their textures.
+void addElements(const MeshHandle& handle, const SolutionHandle& light, const Camera& camera,
                  const RenderOptions& options, const ElementOptions& elements, SurfaceLight& drawn,
                  Progress& progress) {
+  const PatchMesh& mesh = handle.result.mesh;
   const std::vector<std::uint8_t> wanted = visiblePatches(mesh, camera, options, progress);
   drawn.elements = std::make_shared<const Elements>(computeElements(
       mesh, *light.materials, light.solution.irradiance, elements, wanted, progress));
   drawn.reflectance = light.materials->reflectance;
   drawn.emission = light.materials->emission;
+  if (handle.scene && light.materials.get() == &handle.materials) {
+    drawn.materials = pointMaterials(*handle.scene, mesh, handle.materials, wanted);
+  }
 }
 
 /// The picture of a solution, or of radiosities (N, bands) if `light` is null.
@@ -265,7 +270,7 @@ py::array render(const MeshHandle& mesh, const SolutionHandle* light,
                              drawn.reflected);
     }
     if (with_elements) {
-      addElements(patches, *light, *camera, options, element_options, drawn, progress);
+      addElements(mesh, *light, *camera, options, element_options, drawn, progress);
     }
     image = renderRadiance(patches, drawn, *camera, options, progress);
   });

@@ -51,6 +51,7 @@ class ItemBuffer {
   ItemBuffer(const PatchMesh& mesh, const View& view, int samples, bool show_backs);
 
   const View& view() const { return view_; }
+  int samples() const { return samples_; }  ///< S
   int tileCount() const { return tiles_x_ * tiles_y_; }
   /// Resolves one tile. Different threads may resolve different tiles at once. `items` is scratch
   /// memory and may have been used for another tile.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace radiosity {
@@ -42,6 +43,8 @@ void PatchShader::setRoot(Index patch, Index piece) {
   if (elements != nullptr && elements->indirect.elements[root].corners == 0) return;
   root_ = root;
   patch_ = patch;
+  const PointMaterials* materials = field_.roots->materials;
+  varies_ = materials != nullptr && materials->varies(patch);
   normal_ = mesh_.normal[patch];
   height_ = glm::dot(normal_, mesh_.vertices[roots.corner[root][0]] - items_.view().eye);
 }
@@ -65,13 +68,32 @@ void PatchShader::irradiance(const Vec3& at, std::span<double> sum) {
   sums_.light_square += light * light / samples_;
 }
 
+/// Samples are as far apart on the patch as in the picture, at its depth; more where it is seen
+/// aslant, in one direction.
+PointMaterials::Values PatchShader::materialAt(const Vec3& at, double depth) const {
+  const View& view = items_.view();
+  const double facing = std::abs(glm::dot(normal_, glm::normalize(at - view.eye)));
+  const double across = depth / (view.focal * items_.samples());
+  return field_.roots->materials->at(patch_, at, across / std::sqrt(std::max(facing, 0.1)));
+}
+
 std::array<double, 3> PatchShader::rootAt(double x, double y) {
   const ShadedRoots& shaded = *field_.roots;
   const Vec3 ray = items_.view().rayThrough(x, y);
-  const Vec3 at = items_.view().eye + ray * (height_ / glm::dot(normal_, ray));
+  const double depth = height_ / glm::dot(normal_, ray);
+  const Vec3 at = items_.view().eye + ray * depth;
   std::array<double, 3> light{};
   const auto bands = std::size_t(shaded.bands);
   irradiance(at, std::span(light).first(bands));
+  if (varies_) {
+    const PointMaterials::Values own = materialAt(at, depth);
+    for (int b = 0; b < 3; ++b) {
+      const double emission = shaded.emission[patch_ * bands + std::size_t(b)];
+      light[b] =
+          shaded.factor * (emission * own.emission_factor[b] + own.reflectance[b] * light[b]);
+    }
+    return light;
+  }
   for (std::size_t b = 0; b < bands; ++b) {
     const std::size_t k = patch_ * bands + b;
     light[b] = shaded.factor * (shaded.emission[k] + shaded.reflectance[k] * light[b]);

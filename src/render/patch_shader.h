@@ -6,6 +6,7 @@
 
 #include "radiosity/elements.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/point_materials.h"
 #include "render/item_buffer.h"
 
 namespace radiosity {
@@ -35,6 +36,8 @@ struct ShadedRoots {
   int rays = 0;                     ///< of a pixel
   int every = 1;                    ///< draws only each pixel of this number, across and down
   std::span<PointSums> tiles = {};  ///< of each tile of the item buffer
+  /// Of three bands; null: none varies.
+  const PointMaterials* materials = nullptr;
 };
 
 /// A field over the patches: constant on each, interpolated from values at the corners, or taken
@@ -80,6 +83,7 @@ class PatchShader {
   void setRoot(Index patch, Index piece);
   std::array<double, 3> rootAt(double x, double y);
   void irradiance(const Vec3& at, std::span<double> sum);
+  PointMaterials::Values materialAt(const Vec3& at, double depth) const;
 
   const PatchMesh& mesh_;
   const ItemBuffer& items_;
@@ -87,6 +91,7 @@ class PatchShader {
   int samples_ = 1;  ///< of the pixel
   PointSums sums_;
   std::size_t root_ = kNone;  ///< kNone: the patch has no root, or no root with light
+  bool varies_ = false;       ///< the material of the patch, from point to point
   Vec3 normal_{0.0};          ///< of the patch
   double height_ = 0;         ///< of its plane, seen from the eye
   Index patch_ = 0;

@@ -40,6 +40,7 @@ class Gathering {
     ShadedRoots shaded{light_.points->roots(), light_.points->bands(), light_.reflectance,
                        light_.emission, std::numbers::inv_pi};
     shaded.points = light_.points.get();
+    shaded.materials = light_.materials.get();
     shaded.rays = report_.rays_a_pixel;
     shaded.every = every;
     shaded.tiles = tiles;

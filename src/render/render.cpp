@@ -231,6 +231,7 @@ Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Cam
                        light.emission, std::numbers::inv_pi};
     shaded.elements = light.elements.get();
     shaded.lookup = &lookup;
+    shaded.materials = light.materials.get();
     field.roots = &shaded;
     return draw(mesh, field, camera, with_sky, progress);
   }

@@ -6,11 +6,15 @@
 
 #include "coarse_builder.h"
 #include "support/colours.h"
+#include "textures.h"
 
 namespace radiosity {
 namespace {
 
 using test::CoarseBuilder;
+using test::expectNear;
+using test::meanOf;
+using test::noise;
 using test::rgbAt;
 
 PatchMesh cut(CoarseBuilder& input, std::size_t patches) {
@@ -19,29 +23,6 @@ PatchMesh cut(CoarseBuilder& input, std::size_t patches) {
   MeshReport report;
   Progress progress;
   return subdivide(input.complex(), input.scene(), options, report, progress);
-}
-
-/// `width` x `height` texels with values that follow no pattern, 0 to 1.
-Texture noise(int width, int height) {
-  Texture texture;
-  texture.width = width;
-  texture.height = height;
-  std::uint32_t state = 12345;
-  for (int k = 0; k < 3 * width * height; ++k) {
-    state = state * 1664525u + 1013904223u;
-    texture.texels.push_back(float(state >> 8) / float(1 << 24));
-  }
-  return texture;
-}
-
-Vec3 meanOf(const Texture& texture) {
-  Vec3 sum(0.0);
-  for (std::size_t k = 0; k < texture.texels.size(); ++k) sum[int(k % 3)] += texture.texels[k];
-  return sum / (double(texture.texels.size()) / 3);
-}
-
-void expectNear(const Vec3& a, const Vec3& b, double tolerance) {
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "band " << c;
 }
 
 /// The unit square in z = 0 with the texture's top left at (0, 1), `tiles` times over each way.

@@ -185,5 +185,49 @@ TEST(PixelGather, ImpossibleInputIsRefused) {
   EXPECT_NO_THROW(PixelGatherOptions().validate());
 }
 
+/// A square under an even sky of radiance 1: B = pi rho, radiance rho, texel by texel.
+TEST(Textures, AreDrawnTexelByTexel) {
+  SceneBuilder builder;
+  builder.surface("sign");
+  builder.level(0, -1, -1, 1, 1, 0);
+  Scene scene = builder.scene();
+  scene.sky = Vec3(1.0);
+  scene.materials[0].reflectance = Vec3(1.0);
+  scene.materials[0].texture = 0;
+  // Four quarters, each of 2 x 2 alike texels, so that pixels within them are not blurred.
+  Texture texture{.name = "", .width = 4, .height = 4, .texels = {}, .repeat = false};
+  const auto quarter = [](int i, int j) {
+    return 0.1F + 0.2F * float(i / 2) + 0.4F * float(j / 2);
+  };
+  for (int j = 0; j < 4; ++j) {
+    for (int i = 0; i < 4; ++i) {
+      for (int b = 0; b < 3; ++b) texture.texels.push_back(quarter(i, j));
+    }
+  }
+  scene.textures = {texture};
+  scene.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  Camera camera;
+  camera.eye = {0, 0, 10};
+  camera.target = {0, 0, 0};
+  Solved solved(scene, camera, 1);
+  const auto at = [](const Image& image, int i, int j) {
+    // Centre of texel (i, j): the square spans 2 / (2 * 10 * tan(fov / 2)) of the picture.
+    const double half = 0.5 * image.width / (10 * std::tan(0.5 * Camera().vertical_fov));
+    const int x = int(0.5 * image.width + (i - 1.5) / 2 * half);
+    const int y = int(0.5 * image.height + (j - 1.5) / 2 * half);
+    return double(image.rgba[4 * std::size_t(y * image.width + x)]);
+  };
+  const double mean = 0.4;
+  EXPECT_NEAR(at(solved.elements(128), 0, 0), mean, 1e-3) << "means over patches";
+  Progress quiet;
+  solved.light.materials = pointMaterials(scene, solved.mesh, solved.materials);
+  // Irradiance is pi: rays at the square end in the sky alone. Texels are single precision.
+  for (const Image& image : {solved.elements(128), solved.gather(128).radiance}) {
+    for (const int i : {0, 3}) {
+      for (const int j : {0, 3}) EXPECT_NEAR(at(image, i, j), quarter(i, j), 1e-3) << i << j;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace radiosity

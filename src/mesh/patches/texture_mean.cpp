@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 
 #include "base/geometry/box.h"
@@ -105,6 +106,19 @@ Vec3 TextureMean::at(const Vec2& uv) const {
   const Level& level = levels_[0];
   return texel(level, long(std::floor(uv.x * double(level.width))),
                long(std::floor(uv.y * double(level.height))));
+}
+
+Vec3 TextureMean::filtered(const Vec2& uv, double spacing) const {
+  const double halvings = spacing > 1 ? std::round(std::log2(spacing)) : 0.0;
+  const Level& level = levels_[std::size_t(std::min(halvings, double(levels_.size() - 1)))];
+  const Vec2 at = uv * Vec2(double(level.width), double(level.height)) - Vec2(0.5);
+  const Vec2 low = glm::floor(at);
+  const Vec2 share = at - low;
+  const long i = long(low.x);
+  const long j = long(low.y);
+  const Vec3 above = glm::mix(texel(level, i, j), texel(level, i + 1, j), share.x);
+  const Vec3 below = glm::mix(texel(level, i, j + 1), texel(level, i + 1, j + 1), share.x);
+  return glm::mix(above, below, share.y);
 }
 
 Vec3 TextureMean::over(std::span<const Vec2> uv) const {

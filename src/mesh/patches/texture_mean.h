@@ -22,6 +22,11 @@ class TextureMean {
   /// The texel at (u, v).
   Vec3 at(const Vec2& uv) const;
 
+  /// The colour at (u, v), linear between the centres of texels (bilinear). `spacing`: of the
+  /// points asked about, in texels; above 1 those of the halved texture that has about one texel a
+  /// point (a mip map; Williams, "Pyramidal parametrics", 1983).
+  Vec3 filtered(const Vec2& uv, double spacing) const;
+
  private:
   static constexpr double kMostTexels = 256.0 * 256.0;
   struct Level {

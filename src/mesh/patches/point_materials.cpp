@@ -1,0 +1,152 @@
+#include "radiosity/point_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <utility>
+#include <vector>
+
+#include "base/geometry/plane_frame.h"
+#include "base/parallel.h"
+#include "mesh/patches/faces_under_patches.h"
+#include "mesh/patches/texture_mean.h"
+
+namespace radiosity {
+
+namespace {
+
+/// A triangle of a face under a patch.
+struct Textured {
+  std::array<Vec3, 3> p;
+  std::array<Vec2, 3> uv;
+  std::array<Vec3, 3> colour;
+
+  /// Barycentric coordinates of a point, seen along the triangle's normal.
+  Vec3 weights(const Vec3& q) const {
+    const Vec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const double whole = glm::dot(normal, normal);
+    const auto share = [&](const Vec3& a, const Vec3& b) {
+      return glm::dot(glm::cross(b - a, q - a), normal) / whole;
+    };
+    return {share(p[1], p[2]), share(p[2], p[0]), share(p[0], p[1])};
+  }
+  /// Of texture coordinates, over that in space.
+  double areaRatio() const {
+    const double area = glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+    return std::abs(cross2(uv[1] - uv[0], uv[2] - uv[0])) / area;
+  }
+};
+
+double least(const Vec3& weights) { return std::min({weights.x, weights.y, weights.z}); }
+
+template <class Value>
+Value mixed(const std::array<Value, 3>& values, const Vec3& weights) {
+  return weights.x * values[0] + weights.y * values[1] + weights.z * values[2];
+}
+
+}  // namespace
+
+struct PointMaterials::Data {
+  std::vector<Material> materials;
+  std::deque<Texture> textures;  // means keep references
+  std::vector<TextureMean> means;
+  std::vector<Index> material;  // of each patch
+  std::vector<Index> front;     // of each patch: itself, or the patch on the other side
+  std::vector<std::vector<Textured>> triangles;  // of fronts
+  std::vector<Vec3> emission;                    // of each patch, W/m^2
+
+  Vec3 texel(Index texture, const Textured& triangle, const Vec2& uv, double spacing) const {
+    if (texture == kNone) return Vec3(1.0);
+    const Texture& image = textures[texture];
+    const double texels = triangle.areaRatio() * double(image.width) * double(image.height);
+    return means[texture].filtered(uv, spacing * std::sqrt(texels));
+  }
+};
+
+PointMaterials::PointMaterials(const Scene& scene, const PatchMesh& mesh,
+                               const PatchMaterials& materials,
+                               std::span<const std::uint8_t> wanted) {
+  auto data = std::make_unique<Data>();
+  data->materials = scene.materials;
+  data->textures.assign(scene.textures.begin(), scene.textures.end());
+  data->means.reserve(scene.textures.size());
+  for (const Texture& texture : data->textures) data->means.emplace_back(texture);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    data->material.push_back(scene.surfaces[mesh.surface[i]].material);
+    data->front.push_back(mesh.side[i] == 0 ? Index(i) : mesh.twin[i]);
+    const double* emission = &materials.emission[3 * i];
+    data->emission.emplace_back(emission[0], emission[1], emission[2]);
+  }
+  std::vector<std::uint8_t> fronts;
+  if (!wanted.empty()) {
+    fronts.assign(mesh.size(), 0);
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      if (wanted[i] != 0) fronts[data->front[i]] = 1;
+    }
+  }
+  const VaryingSurfaces varying(scene);
+  const FacesUnderPatches faces(scene, mesh, varying, fronts);
+  data->triangles.resize(mesh.size());
+  parallelFor(mesh.size(), 64, [&](std::size_t i) {
+    if (!faces.varies(i) || (!fronts.empty() && fronts[i] == 0)) return;
+    std::vector<Textured>& list = data->triangles[i];
+    const bool coloured = varying.coloured[mesh.surface[i]];
+    faces.forParts(i, coloured, [&](const FlatTriangle& triangle, const auto&, double) {
+      Textured found{{}, triangle.uv, triangle.colour};
+      for (std::size_t k = 0; k < 3; ++k) found.p[k] = scene.vertices[triangle.vertex[k]];
+      // A patch of several pieces has several parts in one triangle.
+      if (list.empty() || list.back().p != found.p) list.push_back(found);
+    });
+  });
+  data_ = std::move(data);
+}
+
+PointMaterials::~PointMaterials() = default;
+
+bool PointMaterials::varies(std::size_t patch) const {
+  return !data_->triangles[data_->front[patch]].empty();
+}
+
+PointMaterials::Values PointMaterials::at(std::size_t patch, const Vec3& point,
+                                          double spacing) const {
+  const std::vector<Textured>& triangles = data_->triangles[data_->front[patch]];
+  const Textured* found = nullptr;
+  Vec3 weights(0.0);
+  for (const Textured& triangle : triangles) {
+    const Vec3 here = triangle.weights(point);
+    if (found != nullptr && !(least(here) > least(weights))) continue;
+    found = &triangle;
+    weights = here;
+    if (least(here) >= 0) break;
+  }
+  // Between faces that welding has moved apart, and beyond edges by rounding.
+  weights = glm::max(weights, 0.0);
+  weights /= weights.x + weights.y + weights.z;
+  const Material& material = data_->materials[data_->material[patch]];
+  const Vec2 uv = mixed(found->uv, weights);
+  const Vec3 colour = mixed(found->colour, weights);
+  Values values;
+  values.reflectance =
+      material.reflectance * colour * data_->texel(material.texture, *found, uv, spacing);
+  if (material.emission_texture == kNone) return values;
+  const Vec3 emission =
+      material.emission * data_->texel(material.emission_texture, *found, uv, spacing);
+  const Vec3& mean = data_->emission[patch];
+  for (int b = 0; b < 3; ++b) values.emission_factor[b] = mean[b] > 0 ? emission[b] / mean[b] : 0.0;
+  return values;
+}
+
+std::shared_ptr<const PointMaterials> pointMaterials(const Scene& scene, const PatchMesh& mesh,
+                                                     const PatchMaterials& materials,
+                                                     std::span<const std::uint8_t> wanted) {
+  const VaryingSurfaces varying(scene);
+  for (Index s = 0; s < scene.surfaces.size(); ++s) {
+    if (varying.at(s))
+      return std::make_shared<const PointMaterials>(scene, mesh, materials, wanted);
+  }
+  return nullptr;
+}
+
+}  // namespace radiosity
