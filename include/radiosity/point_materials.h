@@ -20,8 +20,8 @@ class PointMaterials {
     Vec3 emission_factor{1.0};  ///< multiplies the patch's emission
   };
 
-  /// `mesh`: of `scene`; `materials`: patchMaterials(). Copies what it needs of them. `wanted`: N,
-  /// the patches asked about; empty: all.
+  /// `mesh`: of `scene`, which must outlive this; `materials`: patchMaterials(). `wanted`: N, the
+  /// patches asked about; empty: all.
   PointMaterials(const Scene& scene, const PatchMesh& mesh, const PatchMaterials& materials,
                  std::span<const std::uint8_t> wanted = {});
   ~PointMaterials();
@@ -39,7 +39,7 @@ class PointMaterials {
   std::unique_ptr<const Data> data_;
 };
 
-/// Null if no material of the scene varies within a surface.
+/// The same; null if no material of the scene varies within a surface.
 std::shared_ptr<const PointMaterials> pointMaterials(const Scene& scene, const PatchMesh& mesh,
                                                      const PatchMaterials& materials,
                                                      std::span<const std::uint8_t> wanted = {});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -49,8 +48,7 @@ Value mixed(const std::array<Value, 3>& values, const Vec3& weights) {
 }  // namespace
 
 struct PointMaterials::Data {
-  std::vector<Material> materials;
-  std::deque<Texture> textures;  // means keep references
+  const Scene& scene;
   std::vector<TextureMean> means;
   std::vector<Index> material;  // of each patch
   std::vector<Index> front;     // of each patch: itself, or the patch on the other side
@@ -59,7 +57,7 @@ struct PointMaterials::Data {
 
   Vec3 texel(Index texture, const Textured& triangle, const Vec2& uv, double spacing) const {
     if (texture == kNone) return Vec3(1.0);
-    const Texture& image = textures[texture];
+    const Texture& image = scene.textures[texture];
     const double texels = triangle.areaRatio() * double(image.width) * double(image.height);
     return means[texture].filtered(uv, spacing * std::sqrt(texels));
   }
@@ -68,11 +66,9 @@ struct PointMaterials::Data {
 PointMaterials::PointMaterials(const Scene& scene, const PatchMesh& mesh,
                                const PatchMaterials& materials,
                                std::span<const std::uint8_t> wanted) {
-  auto data = std::make_unique<Data>();
-  data->materials = scene.materials;
-  data->textures.assign(scene.textures.begin(), scene.textures.end());
+  auto data = std::make_unique<Data>(Data{scene, {}, {}, {}, {}, {}});
   data->means.reserve(scene.textures.size());
-  for (const Texture& texture : data->textures) data->means.emplace_back(texture);
+  for (const Texture& texture : scene.textures) data->means.emplace_back(texture);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     data->material.push_back(scene.surfaces[mesh.surface[i]].material);
     data->front.push_back(mesh.side[i] == 0 ? Index(i) : mesh.twin[i]);
@@ -124,7 +120,7 @@ PointMaterials::Values PointMaterials::at(std::size_t patch, const Vec3& point,
   // Between faces that welding has moved apart, and beyond edges by rounding.
   weights = glm::max(weights, 0.0);
   weights /= weights.x + weights.y + weights.z;
-  const Material& material = data_->materials[data_->material[patch]];
+  const Material& material = data_->scene.materials[data_->material[patch]];
   const Vec2 uv = mixed(found->uv, weights);
   const Vec3 colour = mixed(found->colour, weights);
   Values values;
