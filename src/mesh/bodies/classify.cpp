@@ -242,7 +242,7 @@ std::vector<VisibleCell> classify(const Scene& scene, const InputFaces& input,
                                   const std::vector<Plane>& planes, const EdgeTable& edges,
                                   const Arrangement& arrangement, const std::vector<Sheet>& sheets,
                                   const Components& components, MeshReport& report) {
-  const Winding winding(arrangement, sheets, components, input.coincidence);
+  const Winding winding(arrangement, planes, sheets, components, input.coincidence);
   const Bodies bodies(arrangement, sheets, components, winding, input.coincidence);
   const Hollows hollows(scene, input, planes, edges, arrangement, sheets);
   Classifier classifier(scene, arrangement, sheets, components, winding, bodies, hollows, report);

@@ -1,7 +1,9 @@
 #include "mesh/bodies/winding.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "base/union_find.h"
@@ -11,6 +13,11 @@
 namespace radiosity {
 
 namespace {
+
+/// The cells of a space that are looked at, the roomiest. If they disagree, bodies are in contact
+/// but for a little more than coincidence, and no edge parts what lies in the contact from the
+/// rest: a cell with a corner 4e-6 m inside another body. Then each cell looks for itself.
+constexpr std::size_t kEyes = 5;
 
 /// A cell at an edge, with the spaces on its sides of larger and of smaller angles about the edge.
 /// (RingCell of hollows.cpp has the angle, too, since any number of cells may be at an edge there.)
@@ -61,60 +68,128 @@ WindingTree treeOf(const Component& component) {
   return WindingTree(std::move(triangles));
 }
 
-}  // namespace
-
-Winding::Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
-                 const Components& components, double coincidence) {
-  const auto& cells = arrangement.cells;
-  UnionFind joined = joinSpaces(arrangement);
-  // The eye of each space is at the roomiest of its cells.
-  std::vector<Index> best(2 * cells.size(), kNone);
-  for (Index k = 0; k < 2 * cells.size(); ++k) {
-    Index& b = best[joined.find(k)];
-    if (b == kNone || cells[k / 2].room > cells[b / 2].room) b = k;
-  }
-  space_.resize(2 * cells.size());
-  std::vector<Index> eyes;  // by space: 2 cell + side
-  std::vector<Index> number(2 * cells.size(), kNone);
-  for (Index k = 0; k < 2 * cells.size(); ++k) {
-    const Index root = joined.find(k);
-    if (number[root] == kNone) {
-      number[root] = Index(eyes.size());
-      eyes.push_back(best[root]);
+/// The closed components, to be seen from cells' sides.
+class Surroundings {
+ public:
+  Surroundings(const std::vector<PlaneCell>& cells, const std::vector<Plane>& planes,
+               const std::vector<Sheet>& sheets, const Components& components, double coincidence)
+      : cells_(cells),
+        planes_(planes),
+        sheets_(sheets),
+        components_(components),
+        coincidence_(coincidence) {
+    for (Index c = 0; c < components.list.size(); ++c) {
+      const Component& component = components.list[c];
+      if (!component.closed) continue;
+      closed_.push_back(c);
+      trees_.push_back(treeOf(component));
+      boxes_.push_back(component.box.grown(coincidence));
     }
-    space_[k] = number[root];
   }
-  spaces_.resize(eyes.size());
-  lookAround(eyes, arrangement, sheets, components, coincidence);
+
+  /// The winding numbers other than 0 at each eye (2 cell + side).
+  std::vector<std::vector<Winding::Entry>> lookFrom(const std::vector<Index>& eyes) const {
+    std::vector<Box3> boxes(eyes.size());
+    for (std::size_t e = 0; e < eyes.size(); ++e) boxes[e].add(cells_[eyes[e] / 2].sample);
+    boxes.insert(boxes.end(), boxes_.begin(), boxes_.end());
+    std::vector<Index> bodies(closed_.size());
+    std::iota(bodies.begin(), bodies.end(), Index(eyes.size()));
+    std::vector<std::vector<Winding::Entry>> seen(eyes.size());
+    // Pairs are sorted by eye, then by component, so entries ascend.
+    for (const auto& [eye, box] : overlappingPairs(boxes, bodies)) {
+      if (eye >= eyes.size() || box < eyes.size()) continue;
+      const std::size_t k = box - eyes.size();
+      const PlaneCell& cell = cells_[eyes[eye] / 2];
+      const Side side = eyes[eye] % 2 == 0 ? kAbove : kBelow;
+      const double w = trees_[k].around(inFrontOf(cell, side), cell.plane) +
+                       ownPlane(cell, side, closed_[k], sheets_, components_);
+      const int whole = int(std::lround(w));
+      if (whole != 0) seen[eye].push_back({closed_[k], whole});
+    }
+    return seen;
+  }
+
+ private:
+  /// A point off the cell, past surfaces that coincide with it but have planes of their own.
+  Vec3 inFrontOf(const PlaneCell& cell, Side side) const {
+    const double height = 2.0 * coincidence_;
+    return cell.sample + planes_[cell.plane].normal * (side == kAbove ? height : -height);
+  }
+
+  const std::vector<PlaneCell>& cells_;
+  const std::vector<Plane>& planes_;
+  const std::vector<Sheet>& sheets_;
+  const Components& components_;
+  double coincidence_;
+  std::vector<Index> closed_;
+  std::vector<WindingTree> trees_;  // of each closed component
+  std::vector<Box3> boxes_;
+};
+
+/// The cells' sides of each space, the roomiest of them first.
+std::vector<std::vector<Index>> membersOf(const std::vector<PlaneCell>& cells, UnionFind joined) {
+  std::vector<Index> number(2 * cells.size(), kNone);
+  std::vector<std::vector<Index>> members;
+  for (Index k = 0; k < 2 * cells.size(); ++k) {
+    Index& space = number[joined.find(k)];
+    if (space == kNone) {
+      space = Index(members.size());
+      members.emplace_back();
+    }
+    members[space].push_back(k);
+  }
+  for (std::vector<Index>& sides : members) {
+    const auto looked = sides.begin() + std::ptrdiff_t(std::min(sides.size(), kEyes));
+    std::partial_sort(sides.begin(), looked, sides.end(), [&](Index a, Index b) {
+      const double room_a = cells[a / 2].room;
+      const double room_b = cells[b / 2].room;
+      return room_a != room_b ? room_a > room_b : a < b;
+    });
+  }
+  return members;
 }
 
-/// Fills spaces_ with the winding numbers at each space's eye.
-void Winding::lookAround(const std::vector<Index>& eyes, const Arrangement& arrangement,
-                         const std::vector<Sheet>& sheets, const Components& components,
-                         double coincidence) {
-  std::vector<Box3> boxes(eyes.size());
-  std::vector<Index> closed;
-  std::vector<WindingTree> trees;
-  for (std::size_t s = 0; s < eyes.size(); ++s) boxes[s].add(arrangement.cells[eyes[s] / 2].sample);
-  for (Index c = 0; c < components.list.size(); ++c) {
-    const Component& component = components.list[c];
-    if (!component.closed) continue;
-    closed.push_back(c);
-    trees.push_back(treeOf(component));
-    boxes.push_back(component.box.grown(coincidence));
+/// Whether the first `count` lists have the same entries.
+bool agree(std::span<const std::vector<Winding::Entry>> lists) {
+  return std::all_of(lists.begin(), lists.end(), [&](const std::vector<Winding::Entry>& list) {
+    return std::equal(list.begin(), list.end(), lists[0].begin(), lists[0].end(),
+                      [](const Winding::Entry& a, const Winding::Entry& b) {
+                        return a.component == b.component && a.number == b.number;
+                      });
+  });
+}
+
+}  // namespace
+
+Winding::Winding(const Arrangement& arrangement, const std::vector<Plane>& planes,
+                 const std::vector<Sheet>& sheets, const Components& components,
+                 double coincidence) {
+  const auto& cells = arrangement.cells;
+  const Surroundings around(cells, planes, sheets, components, coincidence);
+  const std::vector<std::vector<Index>> members = membersOf(cells, joinSpaces(arrangement));
+  std::vector<Index> eyes;
+  for (const std::vector<Index>& sides : members) {
+    eyes.insert(eyes.end(), sides.begin(),
+                sides.begin() + std::ptrdiff_t(std::min(sides.size(), kEyes)));
   }
-  std::vector<Index> bodies(closed.size());
-  std::iota(bodies.begin(), bodies.end(), Index(eyes.size()));
-  // Pairs are sorted by eye, then by component, so entries ascend.
-  for (const auto& [eye, box] : overlappingPairs(boxes, bodies)) {
-    if (eye >= eyes.size() || box < eyes.size()) continue;
-    const std::size_t k = box - eyes.size();
-    const PlaneCell& cell = arrangement.cells[eyes[eye] / 2];
-    const Side side = eyes[eye] % 2 == 0 ? kAbove : kBelow;
-    const double w = trees[k].around(cell.sample, cell.plane) +
-                     ownPlane(cell, side, closed[k], sheets, components);
-    const int whole = int(std::lround(w));
-    if (whole != 0) spaces_[eye].push_back({closed[k], whole});
+  std::vector<std::vector<Entry>> seen = around.lookFrom(eyes);
+  space_.resize(2 * cells.size());
+  std::vector<Index> apart;
+  auto first = seen.begin();
+  for (const std::vector<Index>& sides : members) {
+    const std::size_t count = std::min(sides.size(), kEyes);
+    if (agree(std::span(first, count))) {
+      for (const Index k : sides) space_[k] = Index(spaces_.size());
+      spaces_.push_back(std::move(*first));
+    } else {
+      apart.insert(apart.end(), sides.begin(), sides.end());
+    }
+    first += std::ptrdiff_t(count);
+  }
+  seen = around.lookFrom(apart);
+  for (std::size_t k = 0; k < apart.size(); ++k) {
+    space_[apart[k]] = Index(spaces_.size());
+    spaces_.push_back(std::move(seen[k]));
   }
 }
 

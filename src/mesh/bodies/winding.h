@@ -14,8 +14,8 @@ enum Side : int { kAbove = 0, kBelow = 1 };
 /// For each side of each cell, the closed components into which it looks, with the number of times.
 class Winding {
  public:
-  Winding(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
-          const Components& components, double coincidence);
+  Winding(const Arrangement& arrangement, const std::vector<Plane>& planes,
+          const std::vector<Sheet>& sheets, const Components& components, double coincidence);
 
   /// Winding number of closed component `component` in the space next to a side of a cell: 1
   /// inside, 0 outside (other numbers where the component overlaps itself).
@@ -30,10 +30,6 @@ class Winding {
   }
 
  private:
-  void lookAround(const std::vector<Index>& eyes, const Arrangement& arrangement,
-                  const std::vector<Sheet>& sheets, const Components& components,
-                  double coincidence);
-
   std::vector<Index> space_;                ///< by 2 cell + side
   std::vector<std::vector<Entry>> spaces_;  ///< ascending by component
 };
