@@ -197,7 +197,7 @@ TEST(Textures, AreDrawnTexelByTexel) {
   // Four quarters, each of 2 x 2 alike texels, so that pixels within them are not blurred.
   Texture texture{.name = "", .width = 4, .height = 4, .texels = {}, .repeat = false};
   const auto quarter = [](int i, int j) {
-    return 0.1F + 0.2F * float(i / 2) + 0.4F * float(j / 2);
+    return 0.1F + (i < 2 ? 0.0F : 0.2F) + (j < 2 ? 0.0F : 0.4F);
   };
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
