@@ -17,8 +17,7 @@ inline constexpr std::size_t kMaxRows = 8;
 
 /// The running sums for each row and band. The product at place q is added to sum q modulo kSums,
 /// in the order of places and rounded once (a fused multiply-add), and the sums are added up in a
-/// fixed order. So every vector length and
-/// any number of rows at once give the same bits.
+/// fixed order. So every vector length and any number of rows at once give the same bits.
 inline constexpr std::size_t kSums = 8;
 
 /// Kernels read up to this many values beyond a row's last. They work on whole vectors: if a row

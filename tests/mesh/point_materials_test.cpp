@@ -164,6 +164,34 @@ TEST(PointMaterials, CoplanarFacesOfOnePatchKeepTheirOwnMaps) {
   }
 }
 
+TEST(PointMaterials, ManyFacesUnderOnePatchKeepTheirOwnMaps) {
+  constexpr int kTiles = 12;
+  const Texture texture = noise(kTiles, kTiles);
+  test::SceneBuilder builder;
+  builder.surface("wall");
+  std::vector<Vec2> uv;
+  for (int j = 0; j < kTiles; ++j) {
+    for (int i = 0; i < kTiles; ++i) {
+      const double step = 1.0 / kTiles;
+      builder.level(0, i * step, j * step, (i + 1) * step, (j + 1) * step, 0);
+      uv.insert(uv.end(), 4, Vec2((i + 0.5) * step, (j + 0.5) * step));
+    }
+  }
+  Scene scene = builder.scene();
+  scene.textures = {texture};
+  scene.materials[0].texture = 0;
+  scene.materials[0].reflectance = Vec3(1.0);
+  scene.texcoords = uv;
+  const Meshed square(scene, 1);
+  ASSERT_EQ(square.mesh.size(), 1U);
+  for (int j = 0; j < kTiles; ++j) {
+    for (int i = 0; i < kTiles; ++i) {
+      expectNear(square.reflectanceAt((i + 0.1) / kTiles, (j + 0.8) / kTiles),
+                 texelOf(texture, i, j), kRounding);
+    }
+  }
+}
+
 TEST(PointMaterials, ColoursOfVerticesAreLinear) {
   test::SceneBuilder builder;
   builder.surface("wall");

@@ -102,14 +102,11 @@ bool FacesUnderPatches::varies(std::size_t i) const {
   return mesh_.side[i] == 0 && mesh_.area[i] > 0 && varying_.at(mesh_.surface[i]);
 }
 
-PlaneFrame FacesUnderPatches::frameOf(const PatchMesh& mesh, std::size_t i) {
-  return makeFrame(mesh.centroid[i], mesh.normal[i], axisAcross(mesh.normal[i]));
-}
-
 double FacesUnderPatches::forParts(
     std::size_t i, bool coloured,
     const std::function<void(const FlatTriangle&, const std::vector<Vec2>&, double)>& visit) const {
-  const PlaneFrame frame = frameOf(mesh_, i);
+  const PlaneFrame frame =
+      makeFrame(mesh_.centroid[i], mesh_.normal[i], axisAcross(mesh_.normal[i]));
   double covered = 0;
   for (const Candidate& candidate : nearestFirst(i, frame)) {
     for (const FlatTriangle& triangle : flattened(candidate.face, coloured, frame)) {

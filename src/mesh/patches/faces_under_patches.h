@@ -41,7 +41,6 @@ class FacesUnderPatches {
 
   /// Whether patch i is a front with area whose material varies.
   bool varies(std::size_t i) const;
-  static PlaneFrame frameOf(const PatchMesh& mesh, std::size_t i);
   /// Calls visit(triangle, part, area) for the parts of patch i that lie in triangles of faces,
   /// those of the nearest faces first, until they cover the patch: `part` is a convex polygon in
   /// the patch's frame. Triangles have their colours if `coloured`. Returns the area of all parts.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/geometry/box_tree.h"
 #include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
 #include "mesh/patches/faces_under_patches.h"
@@ -38,6 +39,26 @@ struct Textured {
   }
 };
 
+/// Above this many triangles under a patch a point looks into a tree.
+constexpr std::size_t kMany = 16;
+
+/// Triangles of faces under a patch, the nearest faces first.
+struct Underlay {
+  std::vector<Textured> triangles;
+  std::unique_ptr<const BoxTree> tree;  // of many
+  double reach = 0;                     // metres from the patch to the faces, at most
+
+  void addTree(const Box3& patch) {
+    // As far as FacesUnderPatches looks.
+    reach = 1e-3 * glm::length(patch.high - patch.low);
+    std::vector<Box3> boxes(triangles.size());
+    for (std::size_t t = 0; t < boxes.size(); ++t) {
+      for (const Vec3& corner : triangles[t].p) boxes[t].add(corner);
+    }
+    tree = std::make_unique<const BoxTree>(boxes);
+  }
+};
+
 double least(const Vec3& weights) { return std::min({weights.x, weights.y, weights.z}); }
 
 template <class Value>
@@ -45,15 +66,57 @@ Value mixed(const std::array<Value, 3>& values, const Vec3& weights) {
   return weights.x * values[0] + weights.y * values[1] + weights.z * values[2];
 }
 
+/// The triangle at a point: the first that holds it, else the one that it is least outside of.
+class Search {
+ public:
+  Search(const Underlay& underlay, const Vec3& point) : underlay_(underlay), point_(point) {
+    if (underlay.tree) {
+      Box3 box;
+      box.add(point);
+      underlay.tree->query(box.grown(underlay.reach), [&](Index t) {
+        look(t);
+        return true;
+      });
+    }
+    if (triangle_ != kNone) return;
+    for (Index t = 0; t < underlay.triangles.size() && !holds_; ++t) look(t);
+  }
+
+  const Textured& triangle() const { return underlay_.triangles[triangle_]; }
+  /// Within the triangle: faces may have been moved apart by welding, or by rounding.
+  Vec3 weights() const {
+    const Vec3 inside = glm::max(weights_, 0.0);
+    return inside / (inside.x + inside.y + inside.z);
+  }
+
+ private:
+  void look(Index t) {
+    const Vec3 here = underlay_.triangles[t].weights(point_);
+    const bool holds = least(here) >= 0;
+    const bool better = holds ? !holds_ || t < triangle_
+                              : !holds_ && (triangle_ == kNone || least(here) > least(weights_));
+    if (!better) return;
+    triangle_ = t;
+    weights_ = here;
+    holds_ = holds;
+  }
+
+  const Underlay& underlay_;
+  const Vec3& point_;
+  Index triangle_ = kNone;
+  Vec3 weights_{0.0};
+  bool holds_ = false;
+};
+
 }  // namespace
 
 struct PointMaterials::Data {
   const Scene& scene;
   std::vector<TextureMean> means;
-  std::vector<Index> material;  // of each patch
-  std::vector<Index> front;     // of each patch: itself, or the patch on the other side
-  std::vector<std::vector<Textured>> triangles;  // of fronts
-  std::vector<Vec3> emission;                    // of each patch, W/m^2
+  std::vector<Index> material;     // of each patch
+  std::vector<Index> front;        // of each patch: itself, or the patch on the other side
+  std::vector<Underlay> underlay;  // of fronts
+  std::vector<Vec3> emission;      // of each patch, W/m^2
 
   Vec3 texel(Index texture, const Textured& triangle, const Vec2& uv, double spacing) const {
     if (texture == kNone) return Vec3(1.0);
@@ -84,10 +147,10 @@ PointMaterials::PointMaterials(const Scene& scene, const PatchMesh& mesh,
   }
   const VaryingSurfaces varying(scene);
   const FacesUnderPatches faces(scene, mesh, varying, fronts);
-  data->triangles.resize(mesh.size());
+  data->underlay.resize(mesh.size());
   parallelFor(mesh.size(), 64, [&](std::size_t i) {
     if (!faces.varies(i) || (!fronts.empty() && fronts[i] == 0)) return;
-    std::vector<Textured>& list = data->triangles[i];
+    std::vector<Textured>& list = data->underlay[i].triangles;
     const bool coloured = varying.coloured[mesh.surface[i]];
     faces.forParts(i, coloured, [&](const FlatTriangle& triangle, const auto&, double) {
       Textured found{{}, triangle.uv, triangle.colour};
@@ -95,6 +158,10 @@ PointMaterials::PointMaterials(const Scene& scene, const PatchMesh& mesh,
       // A patch of several pieces has several parts in one triangle.
       if (list.empty() || list.back().p != found.p) list.push_back(found);
     });
+    if (list.size() <= kMany) return;
+    Box3 box;
+    for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
+    data->underlay[i].addTree(box);
   });
   data_ = std::move(data);
 }
@@ -102,33 +169,23 @@ PointMaterials::PointMaterials(const Scene& scene, const PatchMesh& mesh,
 PointMaterials::~PointMaterials() = default;
 
 bool PointMaterials::varies(std::size_t patch) const {
-  return !data_->triangles[data_->front[patch]].empty();
+  return !data_->underlay[data_->front[patch]].triangles.empty();
 }
 
 PointMaterials::Values PointMaterials::at(std::size_t patch, const Vec3& point,
                                           double spacing) const {
-  const std::vector<Textured>& triangles = data_->triangles[data_->front[patch]];
-  const Textured* found = nullptr;
-  Vec3 weights(0.0);
-  for (const Textured& triangle : triangles) {
-    const Vec3 here = triangle.weights(point);
-    if (found != nullptr && !(least(here) > least(weights))) continue;
-    found = &triangle;
-    weights = here;
-    if (least(here) >= 0) break;
-  }
-  // Between faces that welding has moved apart, and beyond edges by rounding.
-  weights = glm::max(weights, 0.0);
-  weights /= weights.x + weights.y + weights.z;
+  const Search search(data_->underlay[data_->front[patch]], point);
+  const Textured& found = search.triangle();
+  const Vec3 weights = search.weights();
   const Material& material = data_->scene.materials[data_->material[patch]];
-  const Vec2 uv = mixed(found->uv, weights);
-  const Vec3 colour = mixed(found->colour, weights);
+  const Vec2 uv = mixed(found.uv, weights);
+  const Vec3 colour = mixed(found.colour, weights);
   Values values;
   values.reflectance =
-      material.reflectance * colour * data_->texel(material.texture, *found, uv, spacing);
+      material.reflectance * colour * data_->texel(material.texture, found, uv, spacing);
   if (material.emission_texture == kNone) return values;
   const Vec3 emission =
-      material.emission * data_->texel(material.emission_texture, *found, uv, spacing);
+      material.emission * data_->texel(material.emission_texture, found, uv, spacing);
   const Vec3& mean = data_->emission[patch];
   for (int b = 0; b < 3; ++b) values.emission_factor[b] = mean[b] > 0 ? emission[b] / mean[b] : 0.0;
   return values;
