@@ -119,7 +119,7 @@ struct PointMaterials::Data {
   std::vector<Vec3> emission;      // of each patch, W/m^2
 
   Vec3 texel(Index texture, const Textured& triangle, const Vec2& uv, double spacing) const {
-    if (texture == kNone) return Vec3(1.0);
+    if (texture == kNone || scene.texcoords.empty()) return Vec3(1.0);
     const Texture& image = scene.textures[texture];
     const double texels = triangle.areaRatio() * double(image.width) * double(image.height);
     return means[texture].filtered(uv, spacing * std::sqrt(texels));
@@ -183,7 +183,7 @@ PointMaterials::Values PointMaterials::at(std::size_t patch, const Vec3& point,
   Values values;
   values.reflectance =
       material.reflectance * colour * data_->texel(material.texture, found, uv, spacing);
-  if (material.emission_texture == kNone) return values;
+  if (material.emission_texture == kNone || data_->scene.texcoords.empty()) return values;
   const Vec3 emission =
       material.emission * data_->texel(material.emission_texture, found, uv, spacing);
   const Vec3& mean = data_->emission[patch];
