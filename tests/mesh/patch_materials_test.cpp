@@ -16,6 +16,7 @@ using test::expectNear;
 using test::meanOf;
 using test::noise;
 using test::rgbAt;
+using test::texelOf;
 
 PatchMesh cut(CoarseBuilder& input, std::size_t patches) {
   MeshOptions options;
@@ -101,13 +102,9 @@ TEST(PatchMaterials, TexturesRepeatOrClamp) {
              1e-12);
   // Clamped, all but the first tile shows the last column and the last row of texels.
   input.scene().textures[0].repeat = false;
-  const auto texel = [&](int i, int j) {
-    const float* p = texture.texels.data() + 3 * (3 * j + i);
-    return Vec3(p[0], p[1], p[2]);
-  };
   Vec3 expected(0.0);
   for (int j = 0; j < 6; ++j) {
-    for (int i = 0; i < 9; ++i) expected += texel(std::min(i, 2), std::min(j, 1)) / 54.0;
+    for (int i = 0; i < 9; ++i) expected += texelOf(texture, std::min(i, 2), std::min(j, 1)) / 54.0;
   }
   expectNear(rgbAt(patchMaterials(input.scene(), cut(input, 1)).reflectance, 0), expected, 1e-12);
 }

@@ -126,6 +126,11 @@ class Surroundings {
   std::vector<Box3> boxes_;
 };
 
+/// The first of a space's sides, from which it is looked at.
+std::span<const Index> eyesOf(const std::vector<Index>& sides) {
+  return std::span(sides).first(std::min(sides.size(), kEyes));
+}
+
 /// The cells' sides of each space, the roomiest of them first.
 std::vector<std::vector<Index>> membersOf(const std::vector<PlaneCell>& cells, UnionFind joined) {
   std::vector<Index> number(2 * cells.size(), kNone);
@@ -139,7 +144,7 @@ std::vector<std::vector<Index>> membersOf(const std::vector<PlaneCell>& cells, U
     members[space].push_back(k);
   }
   for (std::vector<Index>& sides : members) {
-    const auto looked = sides.begin() + std::ptrdiff_t(std::min(sides.size(), kEyes));
+    const auto looked = sides.begin() + std::ptrdiff_t(eyesOf(sides).size());
     std::partial_sort(sides.begin(), looked, sides.end(), [&](Index a, Index b) {
       const double room_a = cells[a / 2].room;
       const double room_b = cells[b / 2].room;
@@ -149,7 +154,7 @@ std::vector<std::vector<Index>> membersOf(const std::vector<PlaneCell>& cells, U
   return members;
 }
 
-/// Whether the first `count` lists have the same entries.
+/// Whether all lists have the same entries.
 bool agree(std::span<const std::vector<Winding::Entry>> lists) {
   return std::all_of(lists.begin(), lists.end(), [&](const std::vector<Winding::Entry>& list) {
     return std::equal(list.begin(), list.end(), lists[0].begin(), lists[0].end(),
@@ -169,15 +174,15 @@ Winding::Winding(const Arrangement& arrangement, const std::vector<Plane>& plane
   const std::vector<std::vector<Index>> members = membersOf(cells, joinSpaces(arrangement));
   std::vector<Index> eyes;
   for (const std::vector<Index>& sides : members) {
-    eyes.insert(eyes.end(), sides.begin(),
-                sides.begin() + std::ptrdiff_t(std::min(sides.size(), kEyes)));
+    const std::span<const Index> some = eyesOf(sides);
+    eyes.insert(eyes.end(), some.begin(), some.end());
   }
   std::vector<std::vector<Entry>> seen = around.lookFrom(eyes);
   space_.resize(2 * cells.size());
   std::vector<Index> apart;
   auto first = seen.begin();
   for (const std::vector<Index>& sides : members) {
-    const std::size_t count = std::min(sides.size(), kEyes);
+    const std::size_t count = eyesOf(sides).size();
     if (agree(std::span(first, count))) {
       for (const Index k : sides) space_[k] = Index(spaces_.size());
       spaces_.push_back(std::move(*first));

@@ -76,11 +76,8 @@ FacesUnderPatches::FacesUnderPatches(const Scene& scene, const PatchMesh& mesh,
   std::vector<Box3> boxes;
   for (Index i = 0; i < mesh.size(); ++i) {
     if (!varies(i) || (!wanted.empty() && wanted[i] == 0)) continue;
-    Box3 box;
-    for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
-    // Rounding or welding may separate patch and face, so we add a little of the patch's own size.
     first_boxes.push_back(Index(boxes.size()));
-    boxes.push_back(box.grown(1e-3 * glm::length(box.high - box.low)));
+    boxes.push_back(boxOf(i).grown(reachOf(i)));
     patches.push_back(i);
   }
   if (patches.empty()) return;
@@ -96,6 +93,17 @@ FacesUnderPatches::FacesUnderPatches(const Scene& scene, const PatchMesh& mesh,
     const Index f = faces[other - patches.size()];
     if (scene.face_surface[f] == mesh.surface[patches[p]]) near_[patches[p]].push_back(f);
   }
+}
+
+Box3 FacesUnderPatches::boxOf(std::size_t i) const {
+  Box3 box;
+  for (const Index v : mesh_.outline(i)) box.add(mesh_.vertices[v]);
+  return box;
+}
+
+double FacesUnderPatches::reachOf(std::size_t i) const {
+  const Box3 box = boxOf(i);
+  return 1e-3 * glm::length(box.high - box.low);
 }
 
 bool FacesUnderPatches::varies(std::size_t i) const {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
 #include "radiosity/patch_mesh.h"
 
@@ -41,6 +42,9 @@ class FacesUnderPatches {
 
   /// Whether patch i is a front with area whose material varies.
   bool varies(std::size_t i) const;
+  /// Metres from patch i within which its faces are looked for: rounding or welding may separate
+  /// them.
+  double reachOf(std::size_t i) const;
   /// Calls visit(triangle, part, area) for the parts of patch i that lie in triangles of faces,
   /// those of the nearest faces first, until they cover the patch: `part` is a convex polygon in
   /// the patch's frame. Triangles have their colours if `coloured`. Returns the area of all parts.
@@ -51,6 +55,7 @@ class FacesUnderPatches {
 
  private:
   struct Candidate;
+  Box3 boxOf(std::size_t i) const;
   std::vector<Candidate> nearestFirst(std::size_t i, const PlaneFrame& frame) const;
   std::vector<FlatTriangle> flattened(Index face, bool coloured, const PlaneFrame& frame) const;
 

@@ -48,9 +48,7 @@ struct Underlay {
   std::unique_ptr<const BoxTree> tree;  // of many
   double reach = 0;                     // metres from the patch to the faces, at most
 
-  void addTree(const Box3& patch) {
-    // As far as FacesUnderPatches looks.
-    reach = 1e-3 * glm::length(patch.high - patch.low);
+  void addTree() {
     std::vector<Box3> boxes(triangles.size());
     for (std::size_t t = 0; t < boxes.size(); ++t) {
       for (const Vec3& corner : triangles[t].p) boxes[t].add(corner);
@@ -158,10 +156,8 @@ PointMaterials::PointMaterials(const Scene& scene, const PatchMesh& mesh,
       // A patch of several pieces has several parts in one triangle.
       if (list.empty() || list.back().p != found.p) list.push_back(found);
     });
-    if (list.size() <= kMany) return;
-    Box3 box;
-    for (const Index v : mesh.outline(i)) box.add(mesh.vertices[v]);
-    data->underlay[i].addTree(box);
+    data->underlay[i].reach = faces.reachOf(i);
+    if (list.size() > kMany) data->underlay[i].addTree();
   });
   data_ = std::move(data);
 }
