@@ -143,8 +143,13 @@ class ExchangeMatrix {
   };
   RowView viewOf(std::size_t i) const;  // row form
   void requireRows(const char* what) const;
-  /// The end of each panel: none has more than panelBytes() unless it is one row.
-  std::vector<std::size_t> panelEnds() const;
+  /// The panels of forPanels(): the end of each, and rowEntries(), empty in the row form. None has
+  /// more than panelBytes() unless it is one row.
+  struct Panels {
+    std::vector<std::size_t> ends;
+    std::vector<Index> entries;
+  };
+  Panels panels() const;
   void checkFactors(std::size_t k, std::span<const double> factors) const;
   void checkPositions(std::size_t k, std::span<const Index> positions,
                       std::span<const double> factors) const;

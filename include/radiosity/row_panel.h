@@ -48,6 +48,11 @@ class RowPanel {
   /// first <= last <= N. Takes O(N + entries of the triangle) and memory for the entries of the
   /// rows in the symmetric form, and for rows of several processes.
   RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last);
+  /// No rows, until read() is called.
+  explicit RowPanel(const ExchangeMatrix& matrix) : matrix_(&matrix) {}
+  /// Holds rows first to last - 1 from now on. `entries`: the matrix's rowEntries(); empty: they
+  /// are counted. Memory of earlier rows is used again.
+  void read(std::size_t first, std::size_t last, std::span<const Index> entries = {});
   std::size_t first() const { return first_; }
   std::size_t last() const { return last_; }  ///< one beyond
 
@@ -74,9 +79,10 @@ class RowPanel {
 
  private:
   const ExchangeMatrix* matrix_;
-  std::size_t first_;
-  std::size_t last_;
-  // Symmetric form, or rows of several processes: compressed, none of them 0. Else empty.
+  std::size_t first_ = 0;
+  std::size_t last_ = 0;
+  // Symmetric form, or rows of several processes: compressed, none of them 0. Else empty. Columns
+  // and values can be longer than the rows.
   std::vector<std::size_t> starts_;
   std::vector<Index> columns_;
   std::vector<double> values_;
@@ -95,9 +101,12 @@ void ExchangeMatrix::forRow(std::size_t i, std::size_t first, std::size_t last,
 
 template <class Visit>
 void ExchangeMatrix::forPanels(Visit&& visit) const {
-  std::size_t first = 0;
-  for (const std::size_t last : panelEnds())
-    visit(RowPanel(*this, std::exchange(first, last), last));
+  const Panels all = panels();
+  RowPanel panel(*this);
+  for (const std::size_t last : all.ends) {
+    panel.read(panel.last(), last, all.entries);
+    visit(std::as_const(panel));
+  }
 }
 
 }  // namespace radiosity

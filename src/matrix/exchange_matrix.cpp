@@ -1,12 +1,14 @@
 #include "radiosity/exchange_matrix.h"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <cmath>
 #include <memory>
 #include <numeric>
 #include <utility>
 
+#include "base/parallel.h"
 #include "base/scratch_rows.h"
 #include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
@@ -15,6 +17,9 @@
 namespace radiosity {
 
 namespace {
+
+/// Rows that a thread counts at a time.
+constexpr std::size_t kCountedRows = 64;
 
 void checkRow(std::size_t i, std::size_t n, std::span<const Index> columns,
               std::span<const double> values) {
@@ -142,20 +147,25 @@ double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
 std::vector<Index> ExchangeMatrix::rowEntries() const {
   if (shared_) return shared_->sizes().row_entries;
   std::vector<Index> entries(size(), 0);
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
+  parallelFor(rows_.size(), kCountedRows, [&](std::size_t i) {
     viewOf(i).forEntries(0, size(), [&](Index, double) { ++entries[i]; });
-  }
-  for (std::size_t k = 0; k < upper_.size(); ++k) {
+  });
+  tbb::enumerable_thread_specific<std::vector<Index>> counts(std::vector<Index>(upper_.size(), 0));
+  parallelFor(upper_.size(), kCountedRows, [&](std::size_t k) {
+    std::vector<Index>& count = counts.local();
     Index own = diagonal_[k] != 0 ? 1 : 0;
     forRuns(upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t length) {
       const Index* later = &order_[k] + 1 + offset;
       for (std::size_t m = 0; m < length; ++m) {
         const Index stored = values[m] != 0 ? 1 : 0;
         own += stored;
-        entries[later[m]] += stored;
+        count[later[m]] += stored;
       }
     });
-    entries[order_[k]] += own;
+    count[order_[k]] += own;
+  });
+  for (const std::vector<Index>& count : counts) {
+    for (std::size_t i = 0; i < count.size(); ++i) entries[i] += count[i];
   }
   return entries;
 }

@@ -12,134 +12,208 @@ namespace radiosity {
 
 namespace {
 
-/// Blocks of the triangle that are walked side by side.
-constexpr std::size_t kBlocks = 32;
+/// Bytes of the rows that a thread lays out at a time, and their number.
+constexpr std::size_t kLayoutBytes = std::size_t(16) << 20;
+constexpr std::size_t kLeastRows = 8;
+constexpr std::size_t kMostRows = 64;
+/// Rows with at least one entry in so many columns are laid out; shorter ones are sorted.
+constexpr std::size_t kSparse = 16;
+/// Blocks of a panel of short rows.
+constexpr std::size_t kSortedBlocks = 32;
 
-/// Gathers rows first to last - 1 of F. Row i has the values of row position(i) of the triangle,
-/// and from every earlier row of the triangle the one value at its own position.
-class Gathering {
+/// Some rows of F, gathered from the triangle. Row i has the values of row position(i) of the
+/// triangle, and from every earlier row of the triangle the one value at its own position.
+class GatheredRows {
  public:
-  Gathering(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
-      : matrix_(matrix), rows_(last - first), row_at_(matrix.size(), kNone) {
-    for (std::size_t k = 0; k < matrix.size(); ++k) {
-      const Index patch = matrix.order()[k];
-      if (patch < first || patch >= last) continue;
-      row_at_[k] = Index(patch - first);
-      positions_.push_back(Index(k));
-    }
-    const std::size_t end = positions_.empty() ? 0 : positions_.back() + 1;
-    const std::size_t blocks = std::min(end, kBlocks);
-    for (std::size_t b = 0; b <= blocks; ++b) ends_.push_back(blocks > 0 ? b * end / blocks : 0);
+  /// Rows first to last - 1.
+  GatheredRows(const ExchangeMatrix& matrix, std::span<const Index> position, std::size_t first,
+               std::size_t last)
+      : matrix_(matrix) {
+    rows_.reserve(last - first);
+    for (std::size_t i = first; i < last; ++i) rows_.push_back({position[i], Index(i - first)});
+    std::sort(rows_.begin(), rows_.end(),
+              [](const Row& a, const Row& b) { return a.position < b.position; });
   }
 
-  /// Returns the rows in compressed form, sorted.
-  void run(std::vector<std::size_t>& starts, std::vector<Index>& columns,
-           std::vector<double>& values) {
-    // The place of each block's next entry in each row.
-    const std::size_t blocks = ends_.size() - 1;
-    std::vector<std::size_t> next(blocks * rows_, 0);
-    parallelFor(blocks, 1, [&](std::size_t b) {
-      forEntries(b, [&](std::size_t row, Index, double) { ++next[b * rows_ + row]; });
-    });
-    starts.assign(rows_ + 1, 0);
-    for (std::size_t row = 0; row < rows_; ++row) {
-      std::size_t at = starts[row];
-      for (std::size_t b = 0; b < blocks; ++b) {
-        const std::size_t count = next[b * rows_ + row];
-        next[b * rows_ + row] = at;
-        at += count;
+  /// Calls visit(row, counted from the first one; column; value) for every entry.
+  template <class Visit>
+  void forEntries(const Visit& visit) const {
+    const std::span<const Index> order = matrix_.order();
+    std::size_t next = 0;  // the first row that is not before k
+    for (std::size_t k = 0; next < rows_.size(); ++k) {
+      const RunRow& stored = matrix_.upperRuns(k);
+      if (rows_[next].position == k) {
+        const Index row = rows_[next++].row;
+        if (matrix_.diagonal(k) != 0) visit(row, order[k], matrix_.diagonal(k));
+        forRuns(stored, [&](std::size_t offset, const auto* values, std::size_t count) {
+          const Index* later = &order[k] + 1 + offset;
+          for (std::size_t m = 0; m < count; ++m) {
+            if (values[m] != 0) visit(row, later[m], double(values[m]));
+          }
+        });
       }
-      starts[row + 1] = at;
+      if (stored.runs.empty()) continue;
+      const double area = matrix_.area()[order[k]];
+      RunReader reader(stored);
+      for (std::size_t m = next; m < rows_.size(); ++m) {
+        const Index position = rows_[m].position;
+        const double value = reader.at(position - k - 1);
+        if (value != 0)
+          visit(rows_[m].row, order[k], value * area / matrix_.area()[order[position]]);
+      }
     }
-    columns.resize(starts.back());
-    values.resize(starts.back());
-    parallelFor(blocks, 1, [&](std::size_t b) {
-      forEntries(b, [&](std::size_t row, Index column, double value) {
-        const std::size_t at = next[b * rows_ + row]++;
-        columns[at] = column;
-        values[at] = value;
-      });
-    });
+  }
+
+ private:
+  struct Row {
+    Index position;
+    Index row;
+  };
+  const ExchangeMatrix& matrix_;
+  std::vector<Row> rows_;  // by position
+};
+
+/// Gathers the rows of a panel.
+class Gathering {
+ public:
+  Gathering(const ExchangeMatrix& matrix, std::span<const Index> position, std::size_t first,
+            std::size_t last)
+      : matrix_(matrix), position_(position), first_(first), last_(last) {}
+
+  std::vector<Index> countEntries() const {
+    std::vector<Index> entries(last_ - first_, 0);
+    rows(first_, last_).forEntries([&](Index row, Index, double) { ++entries[row]; });
+    return entries;
+  }
+
+  /// Writes the rows in compressed form, sorted, to the places that `starts` gives them.
+  void run(std::span<const std::size_t> starts, std::vector<Index>& columns,
+           std::vector<double>& values) const {
+    const std::size_t count = last_ - first_;
+    const bool laid_out = starts.back() * kSparse >= count * matrix_.size();
+    const std::size_t most = kLayoutBytes / (matrix_.size() * sizeof(double));
+    const std::size_t size = laid_out ? std::clamp(most, kLeastRows, kMostRows)
+                                      : (count + kSortedBlocks - 1) / kSortedBlocks;
+    tbb::enumerable_thread_specific<std::vector<double>> layouts;
     tbb::enumerable_thread_specific<EntrySorter> sorters;
-    parallelFor(rows_, 1, [&](std::size_t row) {
-      const std::size_t count = starts[row + 1] - starts[row];
-      sorters.local().sort(std::span(columns).subspan(starts[row], count),
-                           std::span(values).subspan(starts[row], count), matrix_.size());
+    parallelFor((count + size - 1) / size, 1, [&](std::size_t block) {
+      const std::size_t begin = block * size;
+      const std::size_t end = std::min(begin + size, count);
+      const auto block_starts = starts.subspan(begin, end - begin + 1);
+      if (laid_out) {
+        layOut(first_ + begin, block_starts, layouts.local(), columns, values);
+      } else {
+        sort(first_ + begin, block_starts, sorters.local(), columns, values);
+      }
     });
   }
 
  private:
-  /// Calls visit(row of the panel, column, value) for the entries that a block of rows of the
-  /// triangle holds or hands on.
-  template <class Visit>
-  void forEntries(std::size_t block, const Visit& visit) const {
-    const std::span<const Index> order = matrix_.order();
-    for (std::size_t k = ends_[block]; k < ends_[block + 1]; ++k) {
-      const Index row = row_at_[k];
-      if (row != kNone && matrix_.diagonal(k) != 0) visit(row, order[k], matrix_.diagonal(k));
-      const RunRow& stored = matrix_.upperRuns(k);
-      const auto later = std::upper_bound(positions_.begin(), positions_.end(), Index(k));
-      const double area = matrix_.area()[order[k]];
-      const auto handOn = [&](std::size_t position, double value) {
-        visit(row_at_[position], order[k], value * area / matrix_.area()[order[position]]);
-      };
-      if (row == kNone && std::size_t(positions_.end() - later) < stored.runs.size()) {
-        RunReader reader(stored);
-        for (auto at = later; at != positions_.end(); ++at) {
-          const double value = reader.at(*at - k - 1);
-          if (value != 0) handOn(*at, value);
-        }
-        continue;
+  GatheredRows rows(std::size_t first, std::size_t last) const {
+    return {matrix_, position_, first, last};
+  }
+
+  /// Rows from `first` on, by writing them with all their zeros. `layout` is at least as large as
+  /// they were before, and holds kAbsent everywhere.
+  void layOut(std::size_t first, std::span<const std::size_t> starts, std::vector<double>& layout,
+              std::vector<Index>& columns, std::vector<double>& values) const {
+    constexpr double kAbsent = -1;
+    const std::size_t n = matrix_.size();
+    const std::size_t count = starts.size() - 1;
+    if (layout.size() < count * n) layout.resize(count * n, kAbsent);
+    rows(first, first + count).forEntries([&](Index row, Index column, double value) {
+      layout[row * n + column] = value;
+    });
+    for (std::size_t row = 0; row < count; ++row) {
+      const auto line = std::span(layout).subspan(row * n, n);
+      std::size_t at = starts[row];
+      for (std::size_t column = 0; column < n; ++column) {
+        if (line[column] == kAbsent) continue;
+        columns[at] = Index(column);
+        values[at++] = line[column];
       }
-      forRuns(stored, [&](std::size_t offset, const auto* values, std::size_t count) {
-        for (std::size_t m = 0; m < count; ++m) {
-          if (values[m] == 0) continue;
-          const std::size_t position = k + 1 + offset + m;
-          if (row != kNone) visit(row, order[position], double(values[m]));
-          if (row_at_[position] != kNone) handOn(position, double(values[m]));
-        }
-      });
+      std::fill(line.begin(), line.end(), kAbsent);
+    }
+  }
+
+  void sort(std::size_t first, std::span<const std::size_t> starts, EntrySorter& sorter,
+            std::vector<Index>& columns, std::vector<double>& values) const {
+    std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
+    rows(first, first + next.size()).forEntries([&](Index row, Index column, double value) {
+      columns[next[row]] = column;
+      values[next[row]++] = value;
+    });
+    for (std::size_t row = 0; row < next.size(); ++row) {
+      const std::size_t count = starts[row + 1] - starts[row];
+      sorter.sort(std::span(columns).subspan(starts[row], count),
+                  std::span(values).subspan(starts[row], count), matrix_.size());
     }
   }
 
   const ExchangeMatrix& matrix_;
-  std::size_t rows_;
-  std::vector<Index> row_at_;     // by position: row of the panel, kNone: not of it
-  std::vector<Index> positions_;  // of the panel's rows, increasing
-  std::vector<std::size_t> ends_;
+  std::span<const Index> position_;
+  std::size_t first_;
+  std::size_t last_;
 };
+
+/// Makes room for `count` values, exactly: a vector that grows takes up to twice as much.
+template <class T>
+void makeRoom(std::vector<T>& values, std::size_t count) {
+  if (values.size() >= count) return;
+  std::vector<T>().swap(values);
+  values.resize(count);
+}
 
 }  // namespace
 
 RowPanel::RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
-    : matrix_(&matrix), first_(first), last_(last) {
-  if (matrix.sharedRows() != nullptr) {
-    matrix.sharedRows()->panel(first, last, starts_, columns_, values_);
-    return;
-  }
-  if (matrix.isSymmetric()) Gathering(matrix, first, last).run(starts_, columns_, values_);
+    : matrix_(&matrix) {
+  read(first, last);
 }
 
-std::vector<std::size_t> ExchangeMatrix::panelEnds() const {
-  std::vector<std::size_t> ends;
-  if (!symmetric_ && !shared_) {
-    if (size() > 0) ends.push_back(size());
-    return ends;
+void RowPanel::read(std::size_t first, std::size_t last, std::span<const Index> entries) {
+  first_ = first;
+  last_ = last;
+  if (matrix_->sharedRows() != nullptr) {
+    matrix_->sharedRows()->panel(first, last, starts_, columns_, values_);
+    return;
   }
-  // A panel of shared rows must not be larger than the share of a process.
-  const std::size_t share = shared_ ? std::size_t(shared_->processes()) : 1;
-  const std::size_t most = panelBytes(bytes() / share) / RowPanel::kEntryBytes;
-  std::size_t held = 0;
-  const std::vector<Index> entries = rowEntries();
-  for (std::size_t i = 0; i < size(); ++i) {
-    if (held > 0 && held + entries[i] > most) {
-      ends.push_back(i);
-      held = 0;
+  if (!matrix_->isSymmetric()) return;
+  const Gathering gathering(*matrix_, matrix_->position_, first, last);
+  std::vector<Index> counted;
+  if (entries.empty()) {
+    counted = gathering.countEntries();
+  } else {
+    entries = entries.subspan(first, last - first);
+  }
+  starts_.assign(1, 0);
+  for (const Index count : entries.empty() ? std::span<const Index>(counted) : entries) {
+    starts_.push_back(starts_.back() + count);
+  }
+  makeRoom(columns_, starts_.back());
+  makeRoom(values_, starts_.back());
+  gathering.run(starts_, columns_, values_);
+}
+
+ExchangeMatrix::Panels ExchangeMatrix::panels() const {
+  Panels all;
+  if (size() == 0) return all;
+  if (symmetric_ || shared_) {
+    all.entries = rowEntries();
+    // A panel of shared rows must not be larger than the share of a process.
+    const std::size_t share = shared_ ? std::size_t(shared_->processes()) : 1;
+    const std::size_t most = panelBytes(bytes() / share) / RowPanel::kEntryBytes;
+    std::size_t held = 0;
+    for (std::size_t i = 0; i < size(); ++i) {
+      if (held > 0 && held + all.entries[i] > most) {
+        all.ends.push_back(i);
+        held = 0;
+      }
+      held += all.entries[i];
     }
-    held += entries[i];
   }
-  if (size() > 0) ends.push_back(size());
-  return ends;
+  all.ends.push_back(size());
+  return all;
 }
 
 }  // namespace radiosity

@@ -10,7 +10,7 @@
 namespace radiosity {
 
 /// Bytes of the chunks of indices and values that are being written, HDF5's own included.
-inline constexpr std::size_t kFileChunks = std::size_t(4) << 20;
+inline constexpr std::size_t kFileChunks = std::size_t(16) << 20;
 
 /// The most bytes that writing a symmetric matrix of N rows or solving in three bands takes at
 /// once, beside the panels of rows (ExchangeMatrix::panelBytes()).

@@ -1,16 +1,18 @@
-// A long dataset of an HDF5 file, written value by value.
+// A long dataset of an HDF5 file, written in order.
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "base/parallel.h"
 #include "results/h5_writer.h"
 
 namespace radiosity::h5 {
 
-/// Fills a dataset of one dimension in order, a chunk at a time, so that HDF5 computes the checksum
-/// of each chunk once and reads none back.
+/// Fills a dataset of one dimension in order. Checksums of chunks are computed in parallel, and
+/// HDF5 takes the chunks as they are.
 template <class T>
 class ColumnWriter {
  public:
@@ -18,24 +20,47 @@ class ColumnWriter {
       : group_(&group), name_(name) {
     const Shape shape{numberOf<T>(), count, 0};
     dataset_ = group.create(name, shape, "");
+    chunked_ = shape.bytes() > kCompactBytes;
     chunk_ = chunkRows(shape);
-    buffer_.reserve(std::min(chunk_, count));
+    buffer_.reserve(std::min(kChunks * chunk_, count));
   }
-  void push(T value) {
-    buffer_.push_back(value);
-    if (buffer_.size() == chunk_) flush();
+  /// Room for the next `count` values. The caller fills it before its next call, in any order.
+  std::span<T> extend(std::size_t count) {
+    if (buffer_.size() >= kChunks * chunk_) writeChunks(buffer_.size() / chunk_);
+    buffer_.resize(buffer_.size() + count);
+    return std::span(buffer_).last(count);
   }
+  /// Writes what is left, after the last value.
   void flush() {
     if (buffer_.empty()) return;
-    group_->writeRows(name_, dataset_, numberOf<T>(), written_, buffer_.size(), buffer_.data());
-    written_ += buffer_.size();
-    buffer_.clear();
+    if (!chunked_) {
+      group_->writeRows(name_, dataset_, numberOf<T>(), 0, buffer_.size(), buffer_.data());
+      return;
+    }
+    buffer_.resize((buffer_.size() + chunk_ - 1) / chunk_ * chunk_);  // the last one is whole, too
+    writeChunks(buffer_.size() / chunk_);
   }
 
  private:
+  static constexpr std::size_t kChunks = 4;  ///< that are written at a time
+
+  void writeChunks(std::size_t count) {
+    std::vector<std::vector<unsigned char>> stored(count);
+    parallelFor(count, 1, [&](std::size_t c) {
+      const auto* bytes = reinterpret_cast<const unsigned char*>(buffer_.data() + c * chunk_);
+      stored[c] = storedChunk({bytes, chunk_ * sizeof(T)});
+    });
+    for (const std::vector<unsigned char>& bytes : stored) {
+      group_->writeChunk(name_, dataset_, written_, bytes);
+      written_ += chunk_;
+    }
+    buffer_.erase(buffer_.begin(), buffer_.begin() + std::ptrdiff_t(count * chunk_));
+  }
+
   OutputGroup* group_;
   const char* name_;
   Handle dataset_;
+  bool chunked_ = false;
   std::size_t chunk_ = 0;
   std::size_t written_ = 0;
   std::vector<T> buffer_;

@@ -182,6 +182,37 @@ void OutputGroup::writeRows(const std::string& name, const Handle& dataset, Numb
   file_->check(pathOf(name));
 }
 
+void OutputGroup::writeChunk(const std::string& name, const Handle& dataset, std::size_t first,
+                             std::span<const unsigned char> stored) {
+  constexpr std::uint32_t kAllFilters = 0;  // none was left out
+  const hsize_t start = first;
+  if (H5Dwrite_chunk(dataset.get(), H5P_DEFAULT, kAllFilters, &start, stored.size(),
+                     stored.data()) < 0) {
+    file_->fail(pathOf(name));
+  }
+  file_->check(pathOf(name));
+}
+
+std::vector<unsigned char> storedChunk(std::span<const unsigned char> data) {
+  // Words of 16 bits, the first byte being the higher one.
+  std::uint64_t sum = 0;
+  std::uint64_t sum_of_sums = 0;  // below 2^64, since there are less than 2^24 words
+  for (std::size_t k = 0; k + 1 < data.size(); k += 2) {
+    sum += std::uint64_t(data[k]) << 8 | data[k + 1];
+    sum_of_sums += sum;
+  }
+  // HDF5 adds the carries of 16 bits, which gives 65535, not 0, for multiples of it.
+  const auto folded = [](std::uint64_t value) {
+    return std::uint32_t(value == 0 ? 0 : (value - 1) % 65535 + 1);
+  };
+  const std::uint32_t checksum = folded(sum_of_sums) << 16 | folded(sum);
+  std::vector<unsigned char> stored;
+  stored.reserve(data.size() + sizeof checksum);
+  stored.assign(data.begin(), data.end());
+  for (int bit = 0; bit < 32; bit += 8) stored.push_back((unsigned char)(checksum >> bit));
+  return stored;
+}
+
 std::size_t columnWidth(const std::vector<std::string>& values) {
   std::size_t width = 1;
   for (const std::string& value : values) width = std::max(width, value.size());

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,11 +65,15 @@ class OutputGroup {
   std::optional<std::uint64_t> number(const std::string& name) const;
   /// Whether the text `name` of the group `group` in this one is `value`.
   bool says(const std::string& group, const std::string& name, const std::string& value) const;
-  /// Creates an empty dataset of one dimension, to be filled in order by writeRows().
+  /// Creates an empty dataset of one dimension, to be filled by writeRows() or writeChunk().
   Handle create(const std::string& name, const Shape& shape, const std::string& unit);
   /// Writes rows [first, first + count) of a dataset of one dimension.
   void writeRows(const std::string& name, const Handle& dataset, Number number, std::size_t first,
                  std::size_t count, const void* data);
+  /// Writes the chunk of a dataset of one dimension that begins with row `first`; `stored` is that
+  /// of storedChunk().
+  void writeChunk(const std::string& name, const Handle& dataset, std::size_t first,
+                  std::span<const unsigned char> stored);
 
  private:
   OutputGroup(OutputFile& file, Handle id, std::string path);
@@ -80,6 +85,10 @@ class OutputGroup {
   Handle id_;
   std::string path_;
 };
+
+/// A chunk as HDF5 stores it: the bytes and their Fletcher-32 checksum ("HDF5 File Format
+/// Specification", IV.A.2.l). `data`: an even number of bytes below 2^25.
+std::vector<unsigned char> storedChunk(std::span<const unsigned char> data);
 
 /// Takes the same calls as OutputGroup and adds up the bytes that they would write.
 class SizeCounter {

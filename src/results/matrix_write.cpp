@@ -1,7 +1,9 @@
 // Writes the matrix.
 #include <algorithm>
+#include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "results/column_writer.h"
 #include "results/matrix_blocks.h"
 
@@ -12,6 +14,9 @@ using h5::Number;
 
 namespace {
 
+/// The most entries that are converted at a time, unless one row has more.
+constexpr std::int64_t kEntriesAtOnce = std::int64_t(1) << 18;
+
 std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix) {
   std::vector<std::int64_t> indptr(matrix.size() + 1, 0);
   const std::vector<Index> entries = matrix.rowEntries();
@@ -20,22 +25,34 @@ std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix) {
   return indptr;
 }
 
+/// Writes the entries of rows that begin at the entries `starts`.
 template <class T>
-void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix, std::size_t entries,
-                  Progress& progress) {
+void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix,
+                  std::span<const std::int64_t> starts, Progress& progress) {
+  const auto entries = std::size_t(starts.back());
   ColumnWriter<std::int32_t> indices(group, "indices", entries);
   ColumnWriter<T> data(group, "data", entries);
   progress.begin("writing form factors", matrix.size());
   matrix.forPanels([&](const RowPanel& rows) {
-    for (std::size_t i = rows.first(); i < rows.last(); ++i) {
+    for (std::size_t first = rows.first(); first < rows.last();) {
       progress.check();
-      rows.forRow(i, [&](Index column, double value) {
-        indices.push(std::int32_t(column));
-        data.push(T(value));
+      std::size_t last = first + 1;
+      while (last < rows.last() && starts[last + 1] - starts[first] <= kEntriesAtOnce) ++last;
+      const auto count = std::size_t(starts[last] - starts[first]);
+      const std::span<std::int32_t> columns = indices.extend(count);
+      const std::span<T> values = data.extend(count);
+      parallelFor(last - first, 1, [&](std::size_t k) {
+        auto at = std::size_t(starts[first + k] - starts[first]);
+        rows.forRow(first + k, [&](Index column, double value) {
+          columns[at] = std::int32_t(column);
+          values[at++] = T(value);
+        });
       });
-      progress.advance();
+      progress.advance(last - first);
+      first = last;
     }
   });
+  progress.check();  // an interruption during the last rows
   indices.flush();
   data.flush();
   progress.end();
@@ -48,11 +65,10 @@ void writeRows(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& p
   group.dataset("shape", {Number::i64, 2, 0}, shape, "");
   const std::vector<std::int64_t> indptr = rowStarts(matrix);
   group.dataset("indptr", {Number::i64, indptr.size(), 0}, indptr.data(), "");
-  const auto entries = std::size_t(indptr.back());
   if (matrix.precision() == Precision::single_precision) {
-    writeEntries<float>(group, matrix, entries, progress);
+    writeEntries<float>(group, matrix, indptr, progress);
   } else {
-    writeEntries<double>(group, matrix, entries, progress);
+    writeEntries<double>(group, matrix, indptr, progress);
   }
 }
 

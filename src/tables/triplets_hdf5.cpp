@@ -1,4 +1,7 @@
 // Sparse rows as datasets of row, column and value.
+#include <algorithm>
+#include <numeric>
+
 #include "base/atomic_file.h"
 #include "results/column_writer.h"
 #include "tables/table_rows.h"
@@ -10,18 +13,21 @@ namespace {
 using h5::Number;
 
 void writeEntries(h5::OutputGroup& root, const ExchangeMatrix& matrix, Progress& progress) {
-  const std::size_t entries = matrix.nonZeros();
-  h5::ColumnWriter<std::int32_t> row(root, "row", entries);
-  h5::ColumnWriter<std::int32_t> column(root, "column", entries);
-  h5::ColumnWriter<double> value(root, "form_factor", entries);
+  const std::vector<Index> entries = matrix.rowEntries();
+  const std::size_t total = std::accumulate(entries.begin(), entries.end(), std::size_t(0));
+  h5::ColumnWriter<std::int32_t> row(root, "row", total);
+  h5::ColumnWriter<std::int32_t> column(root, "column", total);
+  h5::ColumnWriter<double> value(root, "form_factor", total);
   progress.begin("writing triplets", matrix.size());
   matrix.forPanels([&](const RowPanel& rows) {
     for (std::size_t i = rows.first(); i < rows.last(); ++i) {
       progress.check();
+      std::ranges::fill(row.extend(entries[i]), std::int32_t(i));
+      auto column_at = column.extend(entries[i]).begin();
+      auto value_at = value.extend(entries[i]).begin();
       rows.forRow(i, [&](Index j, double factor) {
-        row.push(std::int32_t(i));
-        column.push(std::int32_t(j));
-        value.push(factor);
+        *column_at++ = std::int32_t(j);
+        *value_at++ = factor;
       });
       progress.advance();
     }

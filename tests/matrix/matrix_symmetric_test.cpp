@@ -128,15 +128,14 @@ TEST(SymmetricForm, RowsAndPanelsVisitEntriesInOrder) {
   }
 }
 
-// Panels that hold only part of the rows: these entries take 60 MB.
-TEST(SymmetricForm, SeveralPanelsCoverAllRowsOnce) {
-  const std::size_t n = 5000;
+/// Panels of a matrix of n rows with an entry in every `stride`-th column hold all rows, once.
+void expectPanelsOfAllRows(std::size_t n, std::size_t stride) {
   std::vector<Index> order(n);
-  for (std::size_t k = 0; k < n; ++k) order[k] = Index((k * 1001) % n);  // 1001 and 5000: coprime
+  for (std::size_t k = 0; k < n; ++k) order[k] = Index((k * 1001) % n);  // coprime to n
   auto matrix =
       ExchangeMatrix::symmetric(std::vector<double>(n, 1.0), order, Precision::single_precision);
-  const auto value = [](std::size_t k, std::size_t q) {
-    return (k + q) % 5 == 0 ? std::ldexp(double(1 + (k * q) % 7), -16) : 0.0;
+  const auto value = [=](std::size_t k, std::size_t q) {
+    return (k + q) % stride == 0 ? std::ldexp(double(1 + (k * q) % 7), -16) : 0.0;
   };
   std::vector<Index> position(n);
   for (std::size_t k = 0; k < n; ++k) {
@@ -163,7 +162,14 @@ TEST(SymmetricForm, SeveralPanelsCoverAllRowsOnce) {
   EXPECT_GE(panels, (bytes + most - 1) / most);
   EXPECT_LE(panels, 2 * (bytes / most + 1));
   EXPECT_EQ(entries, matrix.nonZeros());
-  EXPECT_EQ(entries, n * n / 5);
+  EXPECT_EQ(entries, n * n / stride);
+}
+
+// Panels that hold only part of the rows: entries take 60 MB, 120 MB in the sparse matrix.
+TEST(SymmetricForm, SeveralPanelsCoverAllRowsOnce) { expectPanelsOfAllRows(5000, 5); }
+
+TEST(SymmetricForm, SeveralPanelsOfASparseMatrixCoverAllRowsOnce) {
+  expectPanelsOfAllRows(20000, 40);
 }
 
 // Up to 19 bands: several walks along a row, and a second pass. The row form is a second,
