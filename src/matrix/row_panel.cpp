@@ -4,6 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/parallel.h"
+#include "matrix/make_room.h"
 #include "matrix/run_row.h"
 #include "matrix/shared_rows.h"
 #include "matrix/sort_entries.h"
@@ -155,14 +156,6 @@ class Gathering {
   std::size_t first_;
   std::size_t last_;
 };
-
-/// Makes room for `count` values, exactly: a vector that grows takes up to twice as much.
-template <class T>
-void makeRoom(std::vector<T>& values, std::size_t count) {
-  if (values.size() >= count) return;
-  std::vector<T>().swap(values);
-  values.resize(count);
-}
 
 }  // namespace
 

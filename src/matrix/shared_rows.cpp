@@ -1,11 +1,14 @@
 #include "matrix/shared_rows.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "base/byte_stream.h"
 #include "base/parallel.h"
 #include "base/union_find.h"
+#include "matrix/make_room.h"
 #include "matrix/ordered_sums.h"
 #include "matrix/own_rows.h"
 #include "matrix/run_row.h"
@@ -106,6 +109,37 @@ PanelRows receive(Processes& processes, int from, const WhileWaiting& waiting) {
   rows.columns = bytes.getArray<Index>();
   rows.values = bytes.getArray<double>();
   return rows;
+}
+
+/// Puts the entries that the parts hold of each of `rows` rows one after the other, sorted.
+void merge(std::span<const PanelRows> parts, std::size_t rows, std::size_t n,
+           std::vector<std::size_t>& starts, std::vector<Index>& columns,
+           std::vector<double>& values) {
+  starts.assign(rows + 1, 0);
+  std::vector<std::size_t> from(parts.size() * rows);  // the first entry of a row in each part
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    std::size_t before = 0;
+    for (std::size_t row = 0; row < rows; ++row) {
+      from[p * rows + row] = std::exchange(before, before + parts[p].counts[row]);
+      starts[row + 1] += parts[p].counts[row];
+    }
+  }
+  for (std::size_t row = 0; row < rows; ++row) starts[row + 1] += starts[row];
+  makeRoom(columns, starts.back());
+  makeRoom(values, starts.back());
+  tbb::enumerable_thread_specific<EntrySorter> sorters;
+  parallelFor(rows, kRowGrain, [&](std::size_t row) {
+    std::size_t at = starts[row];
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const std::size_t count = parts[p].counts[row];
+      std::copy_n(&parts[p].columns[from[p * rows + row]], count, &columns[at]);
+      std::copy_n(&parts[p].values[from[p * rows + row]], count, &values[at]);
+      at += count;
+    }
+    const std::size_t count = at - starts[row];
+    sorters.local().sort(std::span(columns).subspan(starts[row], count),
+                         std::span(values).subspan(starts[row], count), n);
+  });
 }
 
 /// The part of a problem that process 0 sends to all, joined with the parts of this process.
@@ -219,21 +253,7 @@ void SharedRows::panel(std::size_t first, std::size_t last, std::vector<std::siz
   processes_.broadcastValue(order, waiting_);
   std::vector<PanelRows> parts{panelOf(own_, first, last)};
   for (int p = 1; p < processes_.size(); ++p) parts.push_back(receive(processes_, p, waiting_));
-  starts.assign(1, 0);
-  std::vector<std::size_t> taken(parts.size(), 0);
-  EntrySorter sorter;
-  for (std::size_t row = 0; row < last - first; ++row) {
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      const std::size_t end = taken[p] + parts[p].counts[row];
-      for (; taken[p] < end; ++taken[p]) {
-        columns.push_back(parts[p].columns[taken[p]]);
-        values.push_back(parts[p].values[taken[p]]);
-      }
-    }
-    sorter.sort(std::span(columns).subspan(starts.back()), std::span(values).subspan(starts.back()),
-                own_.size());
-    starts.push_back(columns.size());
-  }
+  merge(parts, last - first, own_.size(), starts, columns, values);
 }
 
 void SharedRows::columns(std::size_t first, std::size_t last, std::span<double> dense) const {

@@ -200,6 +200,13 @@ class MpiTest(CliTest):
         # others, and message buffers.
         self.assertGreater(alone - fourth, 0.5 * matrix)
 
+    def test_a_matrix_of_several_panels_is_written_as_by_one_process(self):
+        # Rows are collected a panel at a time: 2.8 million entries, of 9 million.
+        options = ["factors", BOX, "--patches", "4000", "--method", "exact", "--tolerance", "1e-2"]
+        self.run_program(*options, "-o", "one.h5")
+        self.mpirun(2, *options, "-o", "many.h5")
+        self.assert_same_factors("one.h5", "many.h5")
+
     def run_at_work(self):
         """Three processes that are at work: a launcher that still starts them waits for a dead one."""
         run = subprocess.Popen(launch(3, "factors", str(DATA / "cluttered.obj"), "--patches", "3000",
