@@ -8,15 +8,12 @@
 #include "matrix/run_row.h"
 #include "matrix/shared_rows.h"
 #include "matrix/sort_entries.h"
+#include "matrix/working_memory.h"
 
 namespace radiosity {
 
 namespace {
 
-/// Bytes of the rows that a thread lays out at a time, and their number.
-constexpr std::size_t kLayoutBytes = std::size_t(16) << 20;
-constexpr std::size_t kLeastRows = 8;
-constexpr std::size_t kMostRows = 64;
 /// Rows with at least one entry in so many columns are laid out; shorter ones are sorted.
 constexpr std::size_t kSparse = 16;
 /// Blocks of a panel of short rows.
@@ -91,10 +88,10 @@ class Gathering {
   void run(std::span<const std::size_t> starts, std::vector<Index>& columns,
            std::vector<double>& values) const {
     const std::size_t count = last_ - first_;
+    if (count == 0) return;
     const bool laid_out = starts.back() * kSparse >= count * matrix_.size();
-    const std::size_t most = kLayoutBytes / (matrix_.size() * sizeof(double));
-    const std::size_t size = laid_out ? std::clamp(most, kLeastRows, kMostRows)
-                                      : (count + kSortedBlocks - 1) / kSortedBlocks;
+    const std::size_t size =
+        laid_out ? laidOutRows(matrix_.size()) : (count + kSortedBlocks - 1) / kSortedBlocks;
     tbb::enumerable_thread_specific<std::vector<double>> layouts;
     tbb::enumerable_thread_specific<EntrySorter> sorters;
     parallelFor((count + size - 1) / size, 1, [&](std::size_t block) {

@@ -22,7 +22,7 @@ class ColumnWriter {
     dataset_ = group.create(name, shape, "");
     chunked_ = shape.bytes() > kCompactBytes;
     chunk_ = chunkRows(shape);
-    buffer_.reserve(std::min(kChunks * chunk_, count));
+    buffer_.reserve(std::min((kChunks + 2) * chunk_, count + chunk_));
   }
   /// Room for the next `count` values. The caller fills it before its next call, in any order.
   std::span<T> extend(std::size_t count) {

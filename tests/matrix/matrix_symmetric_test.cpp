@@ -172,6 +172,17 @@ TEST(SymmetricForm, SeveralPanelsOfASparseMatrixCoverAllRowsOnce) {
   expectPanelsOfAllRows(20000, 40);
 }
 
+TEST(SymmetricForm, AnEmptyPanelHasNoRows) {
+  for (const std::size_t n : {0, 3}) {
+    const auto matrix = ExchangeMatrix::symmetric(
+        std::vector<double>(n, 1.0), n == 0 ? std::vector<Index>{} : std::vector<Index>{2, 0, 1},
+        Precision::single_precision);
+    const RowPanel panel(matrix, n, n);
+    EXPECT_EQ(panel.first(), panel.last());
+    matrix.forPanels([&](const RowPanel& rows) { EXPECT_EQ(rows.last() - rows.first(), n); });
+  }
+}
+
 // Up to 19 bands: several walks along a row, and a second pass. The row form is a second,
 // independent summation.
 TEST(SymmetricForm, ProductAgreesWithEigenAndTheRowForm) {
