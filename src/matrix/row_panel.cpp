@@ -171,15 +171,11 @@ void RowPanel::read(std::size_t first, std::size_t last, std::span<const Index> 
   if (!matrix_->isSymmetric()) return;
   const Gathering gathering(*matrix_, matrix_->position_, first, last);
   std::vector<Index> counted;
-  if (entries.empty()) {
-    counted = gathering.countEntries();
-  } else {
-    entries = entries.subspan(first, last - first);
-  }
+  if (entries.empty()) counted = gathering.countEntries();
+  const auto counts =
+      entries.empty() ? std::span<const Index>(counted) : entries.subspan(first, last - first);
   starts_.assign(1, 0);
-  for (const Index count : entries.empty() ? std::span<const Index>(counted) : entries) {
-    starts_.push_back(starts_.back() + count);
-  }
+  for (const Index count : counts) starts_.push_back(starts_.back() + count);
   makeRoom(columns_, starts_.back());
   makeRoom(values_, starts_.back());
   gathering.run(starts_, columns_, values_);

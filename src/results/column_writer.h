@@ -17,11 +17,8 @@ template <class T>
 class ColumnWriter {
  public:
   ColumnWriter(OutputGroup& group, const char* name, std::size_t count)
-      : group_(&group), name_(name) {
-    const Shape shape{numberOf<T>(), count, 0};
-    dataset_ = group.create(name, shape, "");
-    chunked_ = shape.bytes() > kCompactBytes;
-    chunk_ = chunkRows(shape);
+      : group_(&group), name_(name), shape_{numberOf<T>(), count, 0}, chunk_(chunkRows(shape_)) {
+    if (shape_.bytes() > kCompactBytes) dataset_ = group.create(name, shape_, "");
     buffer_.reserve(std::min((kChunks + 2) * chunk_, count + chunk_));
   }
   /// Room for the next `count` values. The caller fills it before its next call, in any order.
@@ -32,11 +29,11 @@ class ColumnWriter {
   }
   /// Writes what is left, after the last value.
   void flush() {
-    if (buffer_.empty()) return;
-    if (!chunked_) {
-      group_->writeRows(name_, dataset_, numberOf<T>(), 0, buffer_.size(), buffer_.data());
+    if (!dataset_) {
+      group_->dataset(name_, shape_, buffer_.data(), "");
       return;
     }
+    if (buffer_.empty()) return;
     buffer_.resize((buffer_.size() + chunk_ - 1) / chunk_ * chunk_);  // the last one is whole, too
     writeChunks(buffer_.size() / chunk_);
   }
@@ -59,9 +56,9 @@ class ColumnWriter {
 
   OutputGroup* group_;
   const char* name_;
-  Handle dataset_;
-  bool chunked_ = false;
-  std::size_t chunk_ = 0;
+  Shape shape_;
+  Handle dataset_;  // none: without chunks, and written at once
+  std::size_t chunk_;
   std::size_t written_ = 0;
   std::vector<T> buffer_;
 };

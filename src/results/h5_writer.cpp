@@ -169,19 +169,6 @@ void OutputGroup::dataset(const std::string& name, const Shape& shape, const voi
   file_->check(pathOf(name));
 }
 
-void OutputGroup::writeRows(const std::string& name, const Handle& dataset, Number number,
-                            std::size_t first, std::size_t count, const void* data) {
-  const Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  const hsize_t start = first;
-  const hsize_t extent = count;
-  const Handle memory(H5Screate_simple(1, &extent, nullptr), H5Sclose);
-  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &start, nullptr, &extent, nullptr) < 0 ||
-      H5Dwrite(dataset.get(), typeOf(number), memory.get(), space.get(), H5P_DEFAULT, data) < 0) {
-    file_->fail(pathOf(name));
-  }
-  file_->check(pathOf(name));
-}
-
 void OutputGroup::writeChunk(const std::string& name, const Handle& dataset, std::size_t first,
                              std::span<const unsigned char> stored) {
   constexpr std::uint32_t kAllFilters = 0;  // none was left out

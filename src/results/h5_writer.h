@@ -65,11 +65,8 @@ class OutputGroup {
   std::optional<std::uint64_t> number(const std::string& name) const;
   /// Whether the text `name` of the group `group` in this one is `value`.
   bool says(const std::string& group, const std::string& name, const std::string& value) const;
-  /// Creates an empty dataset of one dimension, to be filled by writeRows() or writeChunk().
+  /// Creates an empty dataset of one dimension, to be filled by writeChunk().
   Handle create(const std::string& name, const Shape& shape, const std::string& unit);
-  /// Writes rows [first, first + count) of a dataset of one dimension.
-  void writeRows(const std::string& name, const Handle& dataset, Number number, std::size_t first,
-                 std::size_t count, const void* data);
   /// Writes the chunk of a dataset of one dimension that begins with row `first`; `stored` is that
   /// of storedChunk().
   void writeChunk(const std::string& name, const Handle& dataset, std::size_t first,
