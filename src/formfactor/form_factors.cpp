@@ -32,6 +32,7 @@ struct FormFactorPlan::Prepared {
   FormFactorOptions options;
   // For the exact method:
   std::optional<ExactScene> scene;
+  std::optional<RowSample> sample;      ///< of the scene
   std::optional<ExactKernels> kernels;  ///< of the scene
   ExactEstimate estimate;
   // For the other methods:
@@ -68,7 +69,7 @@ std::string secondsText(double seconds) {
 /// looked at.
 constexpr double kLookShare = 0.03;
 constexpr double kFirstLookSeconds = 0.2;
-constexpr double kLookSeconds = 0.75;
+constexpr double kLookSeconds = 0.5;
 constexpr double kNoFurtherLookSeconds = 0.5;
 
 /// The seconds that exact may take and still be chosen. With shared unknowns it must be the faster
@@ -94,13 +95,19 @@ void takeMemory(const RowMemory& memory, FormFactorPlan& plan) {
   plan.scratch_bytes = memory.scratch_bytes;
 }
 
+/// Goes on from the scene and the sample where a plan that was given up has left them.
 void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   const FormFactorOptions& options = prepared.options;
-  progress.begin("preparing", ExactScene::kSteps);
-  const ExactScene& scene = prepared.scene.emplace(prepared.mesh, progress);
-  progress.end();
-  const RowSample sample =
-      sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), progress);
+  if (!prepared.scene) {
+    progress.begin("preparing", ExactScene::kSteps);
+    prepared.scene.emplace(prepared.mesh, progress);
+    progress.end();
+  }
+  const ExactScene& scene = *prepared.scene;
+  if (!prepared.sample) {
+    prepared.sample = sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), progress);
+  }
+  const RowSample& sample = *prepared.sample;
   prepared.estimate = estimateExact(scene, sample, options);
   addClusters(prepared, true, prepared.estimate);
   const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
@@ -111,6 +118,7 @@ void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progres
   plan.seconds = exactSeconds(scene, kernels, sample, options, progress);
   plan.refining =
       prepared.estimate.work > 0 ? prepared.estimate.refining / prepared.estimate.work : 0.0;
+  prepared.sample.reset();
 }
 
 void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
@@ -157,10 +165,10 @@ void planExactRows(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   LeadingRows& rows =
       prepared.exact_rows.emplace(prepared.mesh, wanted, prepared.options, progress);
   progress.end();
+  RowSample sample = rows.sample(progress);
   const double most = std::max(kLittleExactRowWork, kExactRowWork * prepared.ray_estimate.rays);
   for (const double tolerance : kExactRowTolerances) {
     rows.setTolerance(std::min(prepared.options.toleranceOf(FormFactorMethod::rays), tolerance));
-    const RowSample sample = rows.sample(progress);
     if (rows.work(sample) > most) continue;
     plan.seconds += rows.seconds(sample, progress);
     plan.bytes += rows.bytes() + KnownEntries::bytes(pairs);
@@ -243,6 +251,7 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
     return;
   }
   prepared.scene.reset();
+  prepared.sample.reset();
   prepared.kernels.reset();
   plan.reason =
       fmt::format("to {} they take {}; exact would take ", ray_tolerance, secondsText(ray_seconds));

@@ -14,21 +14,31 @@
 namespace radiosity {
 namespace {
 
-constexpr std::size_t kMostRows = 160;
-/// Rays of a sampled row, in each replicate. The fall of its error from the first number to the
-/// second is measured.
+/// Rows looked at with kFewRays, evenly by position: these tell the norm of a usual row. Of these,
+/// up to kMostRows are cast with kManyRays, to see how their errors fall.
+constexpr std::size_t kMostFirstRows = 512;
+constexpr std::size_t kMostRows = 96;
+/// Rays in each replicate.
 constexpr std::uint32_t kFewRays = kPilotRays;
 constexpr std::uint32_t kManyRays = 8 * kPilotRays;
 
+/// A row by kFewRays.
+struct FirstLook {
+  std::size_t position = 0;
+  RowAccuracy accuracy;
+  double sky = 0;  ///< its share of the rays
+};
+
 struct SampledRow {
+  std::size_t position = 0;
+  double stands_for = 0;  ///< rows, itself included
   RowAccuracy few;
   RowAccuracy many;
   double sky = 0;  ///< its share of the rays
   double few_entries = 0;
   double entries = 0;
   double visible = 0;  ///< entries that any number of rays would find, about
-  double area = 0;
-  BothClocks taken;  ///< by the rays from kFewRays on
+  BothClocks taken;    ///< by the rays from kFewRays on
 };
 
 /// The entries, with those not seen estimated from those seen once and twice (Chao, "Nonparametric
@@ -43,25 +53,34 @@ double visibleEntries(const RayRow& row) {
   return double(row.columns.size()) + once * (once - 1) / (2 * (twice + 1));
 }
 
-SampledRow sampleRow(const RayScene& scene, std::size_t position, const Progress& progress) {
-  SampledRow sampled;
-  sampled.area = scene.area()[position];
+FirstLook lookAt(const RayScene& scene, std::size_t position, const Progress& progress) {
   RayRow row;
   scene.cast(position, kFewRays, row, progress);
-  if (row.columns.empty() || progress.cancelled()) return sampled;
+  if (progress.cancelled()) return {};
+  return {position, accuracyAlone(row, scene.size()), row.skyShare()};
+}
+
+void castMore(const RayScene& scene, SampledRow& sampled, const Progress& progress) {
+  RayRow row;
+  scene.cast(sampled.position, kFewRays, row, progress);
+  if (row.columns.empty() || progress.cancelled()) return;
   sampled.few = accuracyAlone(row, scene.size());
   sampled.few_entries = double(row.columns.size());
   const BothWatches watches;
-  scene.cast(position, kManyRays, row, progress);
+  scene.cast(sampled.position, kManyRays, row, progress);
   sampled.taken = watches.elapsed();
   sampled.many = accuracyAlone(row, scene.size());
   sampled.sky = row.skyShare();
   sampled.entries = double(row.columns.size());
   sampled.visible = visibleEntries(row);
-  return sampled;
 }
 
-/// Moderates errors by those of all sampled rows, as rounds will (CommonError).
+/// Moderates errors by those of all first looks or sampled rows, as rounds will (CommonError).
+void moderate(std::vector<FirstLook>& looks) {
+  CommonError common;
+  for (const FirstLook& look : looks) common.add(look.accuracy);
+  for (FirstLook& look : looks) look.accuracy = common.moderated(look.accuracy);
+}
 void moderate(std::vector<SampledRow>& rows) {
   CommonError few;
   CommonError many;
@@ -75,14 +94,73 @@ void moderate(std::vector<SampledRow>& rows) {
   }
 }
 
+/// What rows have in common that says how many rays each needs.
+struct Need {
+  double usual = 0;  ///< norm of a usual row
+  double sky_weight = 0;
+  double order = kUsualOrder;  ///< at which error squared falls
+
+  double normOf(const RowAccuracy& accuracy, double sky) const {
+    return std::hypot(accuracy.norm, sky_weight * sky);
+  }
+  /// Rays of a row in each replicate for this tolerance, from its error with `rays` of them.
+  double rays(const RowAccuracy& accuracy, double sky, double rays, double tolerance) const {
+    const double norm = std::max(normOf(accuracy, sky), usual);
+    if (!(norm > 0)) return 0;
+    const double over = accuracy.error / (norm * tolerance);
+    // Beyond kMostRays rows are given up and miss the tolerance: then this is too long.
+    return std::max(double(kPilotRays), rays * std::pow(kMerged * over * over, 1 / order));
+  }
+};
+
+double usualNorm(const RayScene& scene, const std::vector<FirstLook>& looks, const Need& need) {
+  UsualNorm usual;
+  for (const FirstLook& look : looks) {
+    usual.add(need.normOf(look.accuracy, look.sky), scene.area()[look.position]);
+  }
+  return usual.value();
+}
+
+/// Chooses rows by how many rays they seem to need: few rows take most of them, and would be missed
+/// or met twice by an even choice. A row is chosen with a probability half of which is even. What
+/// it stands for is the inverse of that (Horvitz & Thompson, "A generalization of sampling without
+/// replacement from a finite universe", J. Am. Stat. Assoc. 47, 1952).
+std::vector<SampledRow> chooseRows(const std::vector<FirstLook>& looks, std::size_t all,
+                                   const Need& need, double tolerance) {
+  std::vector<double> needed;
+  double sum = 0;
+  for (const FirstLook& look : looks) {
+    needed.push_back(need.rays(look.accuracy, look.sky, kFewRays, tolerance));
+    sum += needed.back();
+  }
+  const std::size_t most = std::min(looks.size(), kMostRows);
+  const double of_each = looks.empty() ? 0.0 : double(all) / double(looks.size());
+  std::vector<SampledRow> rows;
+  double until = 0;  // probabilities, times `most`
+  for (std::size_t k = 0; k < looks.size(); ++k) {
+    const double even = 1 / double(looks.size());
+    const double chance = double(most) * (sum > 0 ? 0.5 * (even + needed[k] / sum) : even);
+    // Systematic: at the middle of each unit of the running sum.
+    const double times = std::floor(until + chance + 0.5) - std::floor(until + 0.5);
+    until += chance;
+    if (times > 0) {
+      rows.emplace_back();
+      rows.back().position = looks[k].position;
+      rows.back().stands_for = of_each * times / chance;
+    }
+  }
+  return rows;
+}
+
 /// The order at which error squared falls, over all rows: that of a single row is too rough.
 double orderOf(const std::vector<SampledRow>& rows) {
   double few = 0;
   double many = 0;
   for (const SampledRow& row : rows) {
     if (!(row.many.norm > 0)) continue;
-    few += row.few.error * row.few.error / (row.many.norm * row.many.norm);
-    many += row.many.error * row.many.error / (row.many.norm * row.many.norm);
+    const double weight = row.stands_for / (row.many.norm * row.many.norm);
+    few += weight * row.few.error * row.few.error;
+    many += weight * row.many.error * row.many.error;
   }
   if (!(few > many) || !(many > 0)) return kUsualOrder;
   return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays),
@@ -101,13 +179,9 @@ double entriesBy(const SampledRow& row, double rays) {
 /// The cost of all rows, foreseen from the sampled ones.
 class Forecast {
  public:
-  Forecast(const std::vector<SampledRow>& rows, std::size_t all, const RayAim& aim)
-      : rows_(rows), order_(orderOf(rows)), tolerance_(aim.tolerance), sky_weight_(aim.sky_weight) {
-    for (const SampledRow& row : rows) {
-      usual_.add(normOf(row), row.area);
-      taken_ += row.taken;
-    }
-    times_ = rows.empty() ? 0.0 : double(all) / double(rows.size());
+  Forecast(const std::vector<SampledRow>& rows, const Need& need, const RayAim& aim)
+      : rows_(rows), need_(need), tolerance_(aim.tolerance) {
+    for (const SampledRow& row : rows) taken_ += row.taken;
     loosened_ = loosening(aim.most_rays, [&](double times) { return rays(times); });
   }
 
@@ -116,48 +190,41 @@ class Forecast {
   /// Rays of all rows, for a tolerance loosened by this factor.
   double rays(double loosened) const {
     double sum = 0;
-    for (const SampledRow& row : rows_) sum += raysOf(row, loosened);
-    return kReplicates * kRaysRoundedUp * times_ * sum;
+    for (const SampledRow& row : rows_) sum += row.stands_for * raysOf(row, loosened);
+    return kReplicates * kRaysRoundedUp * sum;
   }
-  /// Entries of all rows together, once they have the rays they get.
-  double entries(std::size_t columns) const {
+  /// Entries of all `n` rows together, once they have the rays they get.
+  double entries(std::size_t n) const {
     double sum = 0;
+    double stand_for = 0;  // n, about
     for (const SampledRow& row : rows_) {
-      sum += std::min(double(columns), entriesBy(row, kRaysRoundedUp * raysOf(row, loosened_)));
+      sum += row.stands_for *
+             std::min(double(n), entriesBy(row, kRaysRoundedUp * raysOf(row, loosened_)));
+      stand_for += row.stands_for;
     }
-    return times_ * sum;
+    return stand_for > 0 ? double(n) * sum / stand_for : 0.0;
   }
   /// Seconds by the clock, on all threads, each row at its own rate: rows that want many rays look
   /// into corners, where rays take longer than under the sky.
   double seconds(double loosened, double entries) const {
     double casting = 0;
     for (const SampledRow& row : rows_) {
-      casting += raysOf(row, loosened) * row.taken.processor / (kManyRays - kFewRays);
+      casting += row.stands_for * raysOf(row, loosened) * row.taken.processor;
     }
     return taken_.ratio() / double(allowedThreads()) *
-           (kRaysRoundedUp * times_ * casting + kEntrySeconds * entries);
+           (kRaysRoundedUp * casting / (kManyRays - kFewRays) + kEntrySeconds * entries);
   }
 
  private:
-  double normOf(const SampledRow& row) const {
-    return std::hypot(row.many.norm, sky_weight_ * row.sky);
-  }
   /// Rays of a row in each replicate.
   double raysOf(const SampledRow& row, double loosened) const {
-    const double norm = std::max(normOf(row), usual_.value());
-    if (!(norm > 0)) return 0;
-    const double over = row.many.error / (norm * tolerance_ * loosened);
-    // Beyond kMostRays rows are given up and miss the tolerance: then this is too long.
-    return std::max(double(kPilotRays), kManyRays * std::pow(kMerged * over * over, 1 / order_));
+    return need_.rays(row.many, row.sky, kManyRays, tolerance_ * loosened);
   }
 
   const std::vector<SampledRow>& rows_;
-  double order_;
+  Need need_;
   double tolerance_;
-  double sky_weight_;
-  UsualNorm usual_;
   BothClocks taken_;
-  double times_ = 0;  ///< rows for each sampled one
   double loosened_ = 1;
 };
 
@@ -189,17 +256,27 @@ void foreseeBytes(const RayScene& scene, double entries, const FormFactorOptions
 RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options,
                          Progress& progress) {
   const std::size_t n = scene.size();
-  std::vector<SampledRow> rows(std::min(n, kMostRows));
-  progress.begin("planning", rows.size());
+  const RayAim aim(options);
+  std::vector<FirstLook> looks(std::min(n, kMostFirstRows));
+  progress.begin("planning", looks.size() + std::min(n, kMostRows));
+  parallelFor(looks.size(), 1, [&](std::size_t k) {
+    looks[k] = lookAt(scene, (2 * k + 1) * n / (2 * looks.size()), progress);
+    progress.advance();
+  });
+  progress.check();
+  moderate(looks);
+  Need need{0, aim.sky_weight};
+  need.usual = usualNorm(scene, looks, need);
+  std::vector<SampledRow> rows = chooseRows(looks, n, need, aim.tolerance);
   parallelFor(rows.size(), 1, [&](std::size_t k) {
-    rows[k] = sampleRow(scene, (2 * k + 1) * n / (2 * rows.size()), progress);
+    castMore(scene, rows[k], progress);
     progress.advance();
   });
   progress.check();
   progress.end();
   moderate(rows);
-  const RayAim aim(options);
-  const Forecast forecast(rows, n, aim);
+  need.order = orderOf(rows);
+  const Forecast forecast(rows, need, aim);
   const double entries = forecast.entries(n);
   RayEstimate estimate;
   estimate.rays = forecast.rays(forecast.loosened());

@@ -12,7 +12,7 @@ inline constexpr double kUsualOrder = 1.25;
 
 // ---- The forecast (ray_estimate.cpp)
 
-/// Bounds of the order that the sample shows: from 160 rows it is still rough.
+/// Bounds of the order that the sample shows: from 96 rows it is still rough.
 inline constexpr double kLeastForeseenOrder = 1.1;
 inline constexpr double kMostForeseenOrder = 1.4;
 /// Merging with the other rows' counts takes about half off the square of an error.

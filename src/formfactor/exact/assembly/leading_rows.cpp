@@ -130,11 +130,11 @@ LeadingRows::LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted,
       scene_(mesh, progress, patchesOf(mesh, wanted_)) {}
 
 RowSample LeadingRows::sample(Progress& progress) const {
-  const double tolerance = options_.toleranceOf(FormFactorMethod::exact);
-  return sampleRows(scene_, scene_.leadingTasks(), tolerance, progress);
+  return samplePairs(scene_, scene_.leadingTasks(), progress);
 }
 
-double LeadingRows::work(const RowSample& sample) const {
+double LeadingRows::work(RowSample& sample) const {
+  foreseeCost(scene_, options_.toleranceOf(FormFactorMethod::exact), sample);
   return estimateExact(scene_, sample, options_).work;
 }
 

@@ -25,9 +25,10 @@ class LeadingRows {
   void setTolerance(double tolerance) { options_.tolerance = tolerance; }
   /// A sample of the rows, for work() and seconds().
   RowSample sample(Progress& progress) const;
-  /// The work of compute(), foreseen as ExactEstimate::work: the same in every run.
-  double work(const RowSample& sample) const;
-  /// The seconds of compute() by the clock, here and now.
+  /// The work of compute() to the tolerance set, foreseen as ExactEstimate::work: the same in every
+  /// run. Sets the sample's cost.
+  double work(RowSample& sample) const;
+  /// The seconds of compute() by the clock, here and now, from a sample given to work().
   double seconds(const RowSample& sample, Progress& progress) const;
   /// Bytes held by compute() beside this, about.
   std::size_t bytes() const;

@@ -10,14 +10,14 @@ namespace {
 
 /// A sample takes ranges of a task until it has this many rows: rows share work on their columns.
 constexpr std::size_t kLeastRows = 4;
-/// The most facets looked at, and tests made, for one range of rows.
+/// The most facets looked at for one range of rows.
 constexpr std::size_t kMostFacets = 128;
-constexpr std::size_t kMostLargeFacets = 4;
-constexpr std::size_t kMostTests = 12'500;
-/// Further tests for each occluder, since testing all against the space between two large facets
-/// settles nothing yet; and the most tests in all.
+constexpr std::size_t kMostLargeFacets = 16;
+/// The most tests made in a place: for each range of rows; for each occluder, since testing all
+/// against the space between two large facets settles nothing yet; and at all.
+constexpr std::size_t kTestsARange = 12'500;
 constexpr std::size_t kTestsAnOccluder = 50;
-constexpr std::size_t kMostTestsAtAll = 200'000;
+constexpr std::size_t kMostTests = 200'000;
 /// Occluded pairs of a task whose cost is guessed, evenly among all.
 constexpr std::size_t kGuessedPairs = 48;
 
@@ -27,6 +27,9 @@ void classify(const ExactScene& scene, std::span<const ElementRange> ranges, Fac
   VisibilityCounts counts;
   VisibilityOfFacets of_facets;
   const double start = processorSeconds();
+  const std::size_t most_tests =
+      std::min(kTestsARange * ranges.size() + kTestsAnOccluder * scene.occluders.occluders.size(),
+               kMostTests);
   for (const ElementRange& range : ranges) {
     const std::size_t facets = scene.visibility.openFacetsAfter(range, size);
     VisibilitySample sample;
@@ -34,9 +37,7 @@ void classify(const ExactScene& scene, std::span<const ElementRange> ranges, Fac
     const std::size_t most = size == FacetSize::large ? kMostLargeFacets : kMostFacets;
     sample.facet_stride = std::max<std::size_t>(1, facets / most);
     sample.first_facet = place % sample.facet_stride;
-    sample.most_tests =
-        counts.shaft_tests +
-        std::min(kMostTests + kTestsAnOccluder * scene.occluders.occluders.size(), kMostTestsAtAll);
+    sample.most_tests = counts.shaft_tests + most_tests / ranges.size();
     const VisibilityOfFacets of_range =
         scene.visibility.classifySome(range, sample, recorded, counts);
     of_facets.settled += of_range.settled;
@@ -76,24 +77,28 @@ std::vector<OccludedPair> evenly(const std::vector<OccludedPair>& pairs, std::si
   return some;
 }
 
-/// Foresees the cost of the occluded pairs.
-void costOfPairs(const ExactScene& scene, RecordedPairs recorded, double tolerance,
-                 SampledPlace& found) {
+/// Sorts occluded pairs by class and column.
+void takePairs(RecordedPairs recorded, SampledPlace& found) {
   for (const OccludedPair& pair : recorded.occluded_pairs) {
     const bool many = pair.occluders_end - pair.occluders_begin >= kManyOccluders;
     found.classes[many ? many_occluders : few_occluders].pairs.push_back(pair);
   }
-  found.occluder_list = std::move(recorded.occluder_list);
-  found.blocks = std::move(recorded.blocks);
   for (SampledPairs& of_class : found.classes) {
-    if (of_class.pairs.empty()) continue;
     std::stable_sort(of_class.pairs.begin(), of_class.pairs.end(),
                      [](const auto& a, const auto& b) { return a.column < b.column; });
+  }
+  found.occluder_list = std::move(recorded.occluder_list);
+  found.blocks = std::move(recorded.blocks);
+}
+
+void foreseeCost(const ExactScene& scene, double tolerance, SampledPlace& place) {
+  for (SampledPairs& of_class : place.classes) {
+    if (of_class.pairs.empty()) continue;
     const std::vector<OccludedPair> guessed = evenly(of_class.pairs, kGuessedPairs);
     const OccludedCost sampled =
-        occludedCost(scene.elements, scene.occluders, guessed, found.occluder_list, tolerance);
+        occludedCost(scene.elements, scene.occluders, guessed, place.occluder_list, tolerance);
     of_class.cost =
-        sampled * (found.closely * double(of_class.pairs.size()) / double(guessed.size()));
+        sampled * (place.closely * double(of_class.pairs.size()) / double(guessed.size()));
   }
 }
 
@@ -104,14 +109,13 @@ struct SampledRanges {
   double weight = 0;  ///< open pairs of all these
 };
 
-SampledPlace lookAt(const ExactScene& scene, double tolerance, std::size_t number,
-                    const SampledRanges& place) {
+SampledPlace lookAt(const ExactScene& scene, std::size_t number, const SampledRanges& place) {
   const BothWatches watches;
   SampledPlace found;
   found.weight = place.weight;
   RecordedPairs recorded;
   classify(scene, place.rows, place.size, number, recorded, found);
-  costOfPairs(scene, std::move(recorded), tolerance, found);
+  takePairs(std::move(recorded), found);
   found.taken = watches.elapsed();
   return found;
 }
@@ -128,7 +132,6 @@ void sumUp(double task_rows, RowSample& sum) {
     sum.occluded += share * place.occluded;
     sum.occluders += share * place.occluders;
     sum.shaft_tests += share * place.shaft_tests;
-    for (const SampledPairs& of_class : place.classes) sum.cost += of_class.cost * share;
     const double task = task_rows / place.rows * place.record_bytes;
     sum.task_bytes = std::max(sum.task_bytes, std::size_t(task));
   }
@@ -137,7 +140,6 @@ void sumUp(double task_rows, RowSample& sum) {
   for (double* value : {&sum.unoccluded, &sum.occluded, &sum.occluders, &sum.shaft_tests}) {
     *value *= sum.all_places;
   }
-  sum.cost = sum.cost * sum.all_places;
 }
 
 /// All ranges of rows of the first tasks, of large facets or of small ones.
@@ -189,11 +191,22 @@ void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, Fa
 }  // namespace
 
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress) {
-  return sampleRows(scene, scene.tasks.size(), tolerance, progress);
+  RowSample sample = samplePairs(scene, scene.tasks.size(), progress);
+  foreseeCost(scene, tolerance, sample);
+  return sample;
 }
 
-RowSample sampleRows(const ExactScene& scene, std::size_t tasks, double tolerance,
-                     Progress& progress) {
+void foreseeCost(const ExactScene& scene, double tolerance, RowSample& sample) {
+  parallelFor(sample.places.size(), 1,
+              [&](std::size_t k) { foreseeCost(scene, tolerance, sample.places[k]); });
+  sample.cost = {};
+  for (const SampledPlace& place : sample.places) {
+    const double share = sample.all_places * place.share();
+    for (const SampledPairs& of_class : place.classes) sample.cost += of_class.cost * share;
+  }
+}
+
+RowSample samplePairs(const ExactScene& scene, std::size_t tasks, Progress& progress) {
   // Pairs of two walls, and of a wall and a small facet, are classes of their own: few of the rows,
   // and much of the work.
   const std::array<std::vector<ElementRange>, 2> ranges = {
@@ -211,7 +224,7 @@ RowSample sampleRows(const ExactScene& scene, std::size_t tasks, double toleranc
   progress.begin("planning", places.size());
   parallelFor(places.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
-    sample.places[k] = lookAt(scene, tolerance, k, places[k]);
+    sample.places[k] = lookAt(scene, k, places[k]);
     progress.advance();
   });
   progress.check();

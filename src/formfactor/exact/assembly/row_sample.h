@@ -65,10 +65,12 @@ inline constexpr std::size_t kSampleSteps = 96;
 /// Some rows in up to kSampleSteps places, of large facets and of small ones, against later facets
 /// of many elements or of few: all of these, or every n-th if there are very many. The work has a
 /// bound, in tests and pairs and not by the clock, so that the counts come out the same in every
-/// run. Steps `progress`; calls its check().
+/// run. Of the rows of the first tasks; `cost` is left to foreseeCost(). Steps `progress`; calls
+/// its check().
+RowSample samplePairs(const ExactScene& scene, std::size_t tasks, Progress& progress);
+/// Foresees what the sampled pairs cost to this tolerance.
+void foreseeCost(const ExactScene& scene, double tolerance, RowSample& sample);
+/// Both, of all rows.
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress);
-/// The same of the rows of the first tasks alone.
-RowSample sampleRows(const ExactScene& scene, std::size_t tasks, double tolerance,
-                     Progress& progress);
 
 }  // namespace radiosity

@@ -20,9 +20,9 @@ constexpr double kLeastClipSeconds = 0.25;
 constexpr double kMostClipSeconds = 0.8;
 /// A round clips about kPairsARound pairs, shared out by foreseen work, none from places and
 /// classes with less than kLeastShare of it; a batch has at most kBatchWork, about a millisecond.
-constexpr double kPairsARound = 256;
+constexpr double kPairsARound = 4096;
 constexpr double kLeastShare = 1e-3;
-constexpr double kBatchWork = 1e5;
+constexpr double kBatchWork = 2e5;
 /// Batches are taken in an order that jumps about, so that those left out when the time is up are
 /// like those taken.
 constexpr std::size_t kJump = 7;
