@@ -236,7 +236,9 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
   const double ray_seconds = plan.seconds;
   const std::string ray_tolerance = fmt::format("{:.2g}", plan.tolerance);
   const double most = secondsExactMayTake(prepared, ray_seconds);
-  if (!exact && most > 2 * kLookSeconds) {
+  // What could not be prepared in the first look would hardly be sampled in a second as short.
+  const double least = prepared.scene ? 2 * kLookSeconds : kLookSeconds / kLookShare;
+  if (!exact && most > least) {
     exact = lookAtExact(prepared, std::max(kLookSeconds, kLookShare * most), progress);
   }
   const bool smaller = exact && !fits(*exact) && !fits(plan) && exact->bytes < plan.bytes;

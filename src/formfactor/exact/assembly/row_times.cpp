@@ -12,14 +12,17 @@ namespace radiosity {
 namespace {
 
 /// Pairs are clipped to time their work, in up to kRounds rounds, until kClipShare of all foreseen
-/// work is done, but for no less than kLeastClipSeconds and no more than kMostClipSeconds. Few
-/// pairs, near to each other, may carry half of the time. Many short batches meet them.
+/// work is done, but for no less than kLeastClipSeconds, or until kMuchOfAll is done, and no more
+/// than kMostClipSeconds. Few pairs, near to each other, may carry half of the time. Many short
+/// batches meet them.
 constexpr std::size_t kRounds = 16;
 constexpr double kClipShare = 0.02;
+constexpr double kMuchOfAll = 0.15;
 constexpr double kLeastClipSeconds = 0.25;
 constexpr double kMostClipSeconds = 0.8;
 /// A round clips about kPairsARound pairs, shared out by foreseen work, none from places and
-/// classes with less than kLeastShare of it; a batch has at most kBatchWork, about a millisecond.
+/// classes with less than kLeastShare of it; a batch has at most kBatchWork, about two
+/// milliseconds. Pairs are dear in small batches, up to ten times in those of single pairs.
 constexpr double kPairsARound = 4096;
 constexpr double kLeastShare = 1e-3;
 constexpr double kBatchWork = 2e5;
@@ -130,8 +133,8 @@ class ClipRounds {
  private:
   bool isOver() const {
     const double taken = taken_.load();
-    return progress_.cancelled() || taken >= kMostClipSeconds ||
-           (taken >= kLeastClipSeconds && done_.load() >= kClipShare * all_);
+    const double enough = taken >= kLeastClipSeconds ? kClipShare : kMuchOfAll;
+    return progress_.cancelled() || taken >= kMostClipSeconds || done_.load() >= enough * all_;
   }
 
   void clipSome(const SampledPlace& place, const SampledPairs& of_class, std::size_t which,
