@@ -31,7 +31,7 @@ class Vrml(CliTest):
     def test_names_colours_and_places(self):
         scene = self.scene(WALL)
         self.assertEqual([[s["name"], s["faces"], s["area_m2"]] for s in scene["surfaces"]],
-                         [["wall/material 0", 1, 1]])
+                         [["wall/paint", 1, 1]])
         material = scene["materials"][0]
         self.assertEqual([material["reflectance"], material["radiance_W_per_m2_sr"], material["sides"]],
                          ["0.25, 0.5, 0.75", "2, 1, 0", "one"])
@@ -40,6 +40,16 @@ class Vrml(CliTest):
                    if line.startswith("v ")]
         self.assertEqual(sorted(tuple(map(float, c)) for c in corners),
                          [(0, 0, 1), (0, 1, 1), (1, 0, 1), (1, 1, 1)])
+
+    def test_materials_have_their_names_and_equal_ones_without_a_name_are_one(self):
+        shape = "Shape { appearance %s { material %s } geometry Box { size 1 1 1 } }\n"
+        bare = "Material { diffuseColor 1 0 0 }"
+        scene = self.scene(HEAD + shape % ("Appearance", "DEF PIN-01 Material { diffuseColor .5 .5 .5 }") +
+                           shape % ("Appearance", "USE PIN-01") + shape % ("DEF lacquer Appearance", bare) +
+                           shape % ("Appearance", bare) + shape % ("Appearance", bare))
+        self.assertEqual([[s["name"], s["faces"]] for s in scene["surfaces"]],
+                         [["a/PIN-01", 12], ["a/lacquer", 6], ["a/material 3", 12]])
+        self.assertEqual([m["name"] for m in scene["materials"]], ["PIN-01", "lacquer", "material 3"])
 
     def test_line_ends_of_other_systems(self):
         for end in ["\r\n", "\r"]:

@@ -22,29 +22,35 @@ namespace {
 
 class AssimpMaterialReader {
  public:
-  AssimpMaterialReader(const aiScene& file, const SceneOptions& options, Scene& scene,
-                       FeatureNotes& ignored)
-      : file_(file), options_(options), scene_(scene), ignored_(ignored) {}
+  AssimpMaterialReader(const aiScene& file, const std::map<unsigned, std::string>& names,
+                       const SceneOptions& options, Scene& scene, FeatureNotes& ignored)
+      : file_(file), known_names_(names), options_(options), scene_(scene), ignored_(ignored) {}
 
   std::vector<AssimpMaterial> read() {
     std::vector<AssimpMaterial> all;
     for (unsigned m = 0; m < file_.mNumMaterials; ++m) {
-      const Material material = convert(*file_.mMaterials[m], m);
-      const Index index = added(material);
+      if (!known_names_.empty() && !known_names_.contains(m)) {
+        all.push_back({kNone, 0, false});
+        continue;
+      }
+      const std::string name = nameOf(*file_.mMaterials[m], m);
+      const Index index = added(name, convert(*file_.mMaterials[m], m, name));
       all.push_back({index, set_, has_colour_});
     }
     return all;
   }
 
  private:
-  Material convert(const aiMaterial& given, unsigned number);
-  Index added(Material material);
+  std::string nameOf(const aiMaterial& given, unsigned number) const;
+  Material convert(const aiMaterial& given, unsigned number, std::string name);
+  Index added(const std::string& name, Material material);
   std::optional<Vec3> colour(const aiMaterial& given, const char* key) const;
   Index texture(const aiMaterial& given, const std::string& material);
   LoadedTexture& loaded(const std::string& name, bool repeat);
   TextureResult readImage(const std::string& name);
 
   const aiScene& file_;
+  const std::map<unsigned, std::string>& known_names_;  ///< by number
   const SceneOptions& options_;
   Scene& scene_;
   FeatureNotes& ignored_;
@@ -64,12 +70,18 @@ std::optional<Vec3> AssimpMaterialReader::colour(const aiMaterial& given, const 
   return Vec3(double(found.r), double(found.g), double(found.b));
 }
 
-Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number) {
+/// The name in the file, or nothing.
+std::string AssimpMaterialReader::nameOf(const aiMaterial& given, unsigned number) const {
+  const auto known = known_names_.find(number);
+  if (known != known_names_.end()) return known->second;
+  aiString text;
+  const bool is_named = library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS;
+  return is_named ? text.C_Str() : "";
+}
+
+Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number, std::string name) {
   set_ = 0;
   has_colour_ = false;
-  aiString text;
-  std::string name;
-  if (library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS) name = text.C_Str();
   // Assimp adds a grey material for meshes without one.
   if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial(kNoMaterial, options_);
   if (name.empty()) name = fmt::format("material {}", number);
@@ -109,10 +121,10 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number)
   return material;
 }
 
-/// Adds a material, or returns an equal one of the same name: some formats give each object its
-/// own.
-Index AssimpMaterialReader::added(Material material) {
-  std::vector<Index>& of_name = added_[material.name];
+/// Adds a material, or returns an equal one of the same name, or one without a name: some formats
+/// give each object its own.
+Index AssimpMaterialReader::added(const std::string& name, Material material) {
+  std::vector<Index>& of_name = added_[name];
   for (const Index index : of_name) {
     const Material& other = scene_.materials[index];
     if (other.reflectance == material.reflectance && other.emission == material.emission &&
@@ -192,9 +204,11 @@ TextureResult AssimpMaterialReader::readImage(const std::string& name) {
 
 }  // namespace
 
-std::vector<AssimpMaterial> readAssimpMaterials(const aiScene& file, const SceneOptions& options,
-                                                Scene& scene, FeatureNotes& ignored) {
-  return AssimpMaterialReader(file, options, scene, ignored).read();
+std::vector<AssimpMaterial> readAssimpMaterials(const aiScene& file,
+                                                const std::map<unsigned, std::string>& names,
+                                                const SceneOptions& options, Scene& scene,
+                                                FeatureNotes& ignored) {
+  return AssimpMaterialReader(file, names, options, scene, ignored).read();
 }
 
 }  // namespace radiosity

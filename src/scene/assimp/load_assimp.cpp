@@ -60,7 +60,7 @@ class AssimpReader {
       if (why.find("mNumMeshes is 0") != std::string::npos) failWithoutFaces();
       fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb", onOneLine(why)));
     }
-    materials_ = readAssimpMaterials(*file, options_, scene_, notes_);
+    materials_ = readAssimpMaterials(*file, x3dMaterials(*file), options_, scene_, notes_);
     scale_ = x3d_.metres_per_unit * metresPerUnit(*file);
     addNodes(*file);
     for (Camera viewpoint : x3d_.viewpoints) {
@@ -100,6 +100,8 @@ class AssimpReader {
 
   File import(const std::string& path, aiFileIO* files) const;
   std::string rewrittenX3d(const std::string& path);
+  const X3dShape* x3dShape(const aiNode& node) const;
+  std::map<unsigned, std::string> x3dMaterials(const aiScene& file) const;
   std::string objectName(const aiNode& node, const aiMesh& mesh) const;
   static double metresPerUnit(const aiScene& file);
   void addNodes(const aiScene& file);
@@ -122,6 +124,7 @@ class AssimpReader {
   std::multimap<std::string, const aiCamera*> camera_of_;  ///< by its node
   std::optional<ColladaCameras> collada_;                  ///< replaces camera_of_
   X3dExtras x3d_;
+  std::vector<X3dShape> x3d_shapes_;
   std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
   std::map<Index, Index> coloured_;   ///< by material: the same for colours of vertices
 };
@@ -147,11 +150,25 @@ std::string AssimpReader::rewrittenX3d(const std::string& path) {
   pugi::xml_document document = is_vrml ? readVrml(vrml, notes_) : checkXml(path);
   if (document.empty()) return readWholeFile(path);
   if (is_vrml) checkXml(vrml, document);
-  X3dExtras extras = rewriteX3d(document, notes_);
+  X3dExtras extras = rewriteX3d(document, x3d_shapes_, notes_);
   if ((is_vrml ? vrml : path) == scene_.file) x3d_ = std::move(extras);
   std::ostringstream out;
   document.save(out, "", pugi::format_raw);
   return out.str();
+}
+
+/// Calls visit(node, place) for all nodes, each before its children. (There is no recursion, since
+/// chains may have any length.)
+template <class Visit>
+void forNodes(const aiScene& file, const Visit& visit) {
+  std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{file.mRootNode, aiMatrix4x4()}};
+  while (!open.empty()) {
+    const auto [node, above] = open.back();
+    open.pop_back();
+    const aiMatrix4x4 place = above * node->mTransformation;
+    visit(*node, place);
+    for (unsigned k = node->mNumChildren; k-- > 0;) open.emplace_back(node->mChildren[k], place);
+  }
 }
 
 /// Whether Assimp invented the name.
@@ -165,20 +182,39 @@ std::string colladaId(const aiNode& node) {
   return known ? id.C_Str() : "";
 }
 
+/// The shape of X3D in a node, or null.
+const X3dShape* AssimpReader::x3dShape(const aiNode& node) const {
+  const std::optional<std::size_t> number = x3dShapeNumber(node.mName.C_Str());
+  return number && *number < x3d_shapes_.size() ? &x3d_shapes_[*number] : nullptr;
+}
+
+/// Names of X3D's materials, by their numbers.
+std::map<unsigned, std::string> AssimpReader::x3dMaterials(const aiScene& file) const {
+  std::map<unsigned, std::string> names;
+  forNodes(file, [&](const aiNode& node, const aiMatrix4x4&) {
+    const X3dShape* const shape = x3dShape(node);
+    for (unsigned k = 0; shape != nullptr && k < node.mNumMeshes; ++k) {
+      names[file.mMeshes[node.mMeshes[k]]->mMaterialIndex] = shape->material;
+    }
+  });
+  return names;
+}
+
 /// The name of an object. If an IFC file has an object in several places, such as a window, Assimp
 /// names it after the kind of reference; then the node above has the name.
 std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) const {
+  std::string of_file = std::filesystem::path(scene_.file).stem().string();
+  if (const X3dShape* const shape = x3dShape(node)) {
+    return shape->name.empty() ? of_file : shape->name;
+  }
   constexpr std::string_view kReference = "IfcMappedItem";
   const aiNode* named = &node;
   while (named->mParent != nullptr && named->mName.C_Str() == kReference) named = named->mParent;
   for (std::string name :
        {std::string(named->mName.C_Str()), colladaId(*named), std::string(mesh.mName.C_Str())}) {
-    for (const std::string_view mark : {kX3dTwoSided, kX3dClockwise}) {
-      if (name.starts_with(mark)) name.erase(0, mark.size());
-    }
     if (!isMadeUp(name)) return name;
   }
-  return std::filesystem::path(scene_.file).stem().string();
+  return of_file;
 }
 
 /// The unit of a file in metres. FBX gives it in centimetres; Collada's is in its root node.
@@ -191,24 +227,16 @@ double AssimpReader::metresPerUnit(const aiScene& file) {
   return 1;
 }
 
-/// Adds all nodes, each before its children. (There is no recursion, since chains may have any
-/// length.)
 void AssimpReader::addNodes(const aiScene& file) {
   for (unsigned c = 0; c < file.mNumCameras; ++c) {
     camera_of_.emplace(file.mCameras[c]->mName.C_Str(), file.mCameras[c]);
   }
-  std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{file.mRootNode, aiMatrix4x4()}};
-  while (!open.empty()) {
-    const auto [node, above] = open.back();
-    open.pop_back();
-    const aiMatrix4x4 place = above * node->mTransformation;
-    for (unsigned k = 0; k < node->mNumMeshes; ++k) {
-      const aiMesh& mesh = *file.mMeshes[node->mMeshes[k]];
-      addMesh(mesh, *node, place);
+  forNodes(file, [&](const aiNode& node, const aiMatrix4x4& place) {
+    for (unsigned k = 0; k < node.mNumMeshes; ++k) {
+      addMesh(*file.mMeshes[node.mMeshes[k]], node, place);
     }
-    addCameras(*node, place);
-    for (unsigned k = node->mNumChildren; k-- > 0;) open.emplace_back(node->mChildren[k], place);
-  }
+    addCameras(node, place);
+  });
 }
 
 Index AssimpReader::twoSided(Index material) {
@@ -274,14 +302,14 @@ void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatri
     }
   }
   const std::vector<Vec3> colours = coloursOf(mesh, object);
-  const std::string_view marks = node.mName.C_Str();
+  const X3dShape* const shape = x3dShape(node);
   const bool mirrors = place.Determinant() < 0;
-  const bool clockwise = marks.find(kX3dClockwise) != std::string_view::npos;
+  const bool clockwise = shape != nullptr && shape->clockwise;
   Index material = materials_[mesh.mMaterialIndex].index;
   if (!colours.empty() && !materials_[mesh.mMaterialIndex].has_colour) {
     material = colouredByVertices(material);
   }
-  if (marks.starts_with(kX3dTwoSided)) material = twoSided(material);
+  if (shape != nullptr && shape->two_sided) material = twoSided(material);
   const Index surface = builder_.surface(object, material);
   const aiVector3D* const texcoords = mesh.mTextureCoords[materials_[mesh.mMaterialIndex].set];
   std::vector<Index> corners;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -13,6 +14,8 @@
 #include <numbers>
 #include <set>
 #include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/file_name.h"
@@ -52,6 +55,9 @@ const std::set<std::string_view> kGeometry = {"Arc2D",
 const std::set<std::string_view> kBesideGeometry = {
     "Appearance",     "MetadataSet",     "MetadataString", "MetadataFloat",
     "MetadataDouble", "MetadataInteger", "MetadataBoolean"};
+
+/// The name of a group with a shape, before its number.
+constexpr std::string_view kShapeGroup = "$shape ";
 
 /// The numbers of an attribute; `otherwise` if it is missing or has another number of values.
 template <std::size_t N>
@@ -162,7 +168,7 @@ void replaceRound(pugi::xml_node shape, pugi::xml_node given) {
 
 class Rewriter {
  public:
-  explicit Rewriter(FeatureNotes& notes) : notes_(notes) {}
+  Rewriter(std::vector<X3dShape>& shapes, FeatureNotes& notes) : shapes_(shapes), notes_(notes) {}
 
   X3dExtras run(pugi::xml_node root) {
     repairAttributes(root);
@@ -253,15 +259,15 @@ class Rewriter {
   }
 
   void rewriteShape(pugi::xml_node parent, pugi::xml_node shape, const std::string& name) {
-    std::string marks;
+    X3dShape found{name, materialOf(shape)};
     pugi::xml_node next;
     for (pugi::xml_node child = shape.first_child(); child; child = next) {
       next = child.next_sibling();
       if (child.type() != pugi::node_element) continue;
       const std::string_view kind = child.name();
       if (kGeometry.contains(kind)) {
-        if (!child.attribute("solid").as_bool(true)) marks += kX3dTwoSided;
-        if (!child.attribute("ccw").as_bool(true)) marks += kX3dClockwise;
+        found.two_sided |= !child.attribute("solid").as_bool(true);
+        found.clockwise |= !child.attribute("ccw").as_bool(true);
         if (kind == "Cone" || kind == "Cylinder") replaceRound(shape, child);
         if (kind.ends_with("Set") && isEmptySet(child)) return noteEmpty(parent, shape, name);
       } else if (!kBesideGeometry.contains(kind)) {
@@ -271,10 +277,16 @@ class Rewriter {
       }
     }
     if (!shape.child("Appearance")) shape.prepend_child("Appearance");
-    if (marks.empty() && !shape.attribute("DEF")) return;
     pugi::xml_node group = parent.insert_child_before("Group", shape);
-    group.append_attribute("DEF") = (marks + name).c_str();
+    group.append_attribute("DEF") = fmt::format("{}{}", kShapeGroup, shapes_.size()).c_str();
     group.append_move(shape);
+    shapes_.push_back(std::move(found));
+  }
+
+  static std::string materialOf(const pugi::xml_node& shape) {
+    const pugi::xml_node appearance = shape.child("Appearance");
+    const std::string name = appearance.child("Material").attribute("DEF").value();
+    return name.empty() ? appearance.attribute("DEF").value() : name;
   }
 
   /// Whether a set has no corners: Assimp fails or, with colours and no coordinates, crashes.
@@ -308,6 +320,7 @@ class Rewriter {
     extras_.viewpoints.push_back(camera);
   }
 
+  std::vector<X3dShape>& shapes_;
   FeatureNotes& notes_;
   X3dExtras extras_;
   std::map<std::string_view, pugi::xml_node> named_;
@@ -325,8 +338,17 @@ std::string withoutQuotes(std::string_view text) {
   return result;
 }
 
-X3dExtras rewriteX3d(pugi::xml_document& document, FeatureNotes& notes) {
-  return Rewriter(notes).run(document.document_element());
+std::optional<std::size_t> x3dShapeNumber(std::string_view group) {
+  if (!group.starts_with(kShapeGroup)) return std::nullopt;
+  std::size_t number = 0;
+  const std::string_view digits = group.substr(kShapeGroup.size());
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+X3dExtras rewriteX3d(pugi::xml_document& document, std::vector<X3dShape>& shapes,
+                     FeatureNotes& notes) {
+  return Rewriter(shapes, notes).run(document.document_element());
 }
 
 }  // namespace radiosity
