@@ -43,19 +43,32 @@ void printNote(Severity severity, const std::string& text) {
   }
 }
 
-/// The text without its names and numbers, which is the same for notes of one kind.
+/// The text without its names and numbers, which is the same for notes of one kind. What stands in
+/// quotes is a name; so is a word with a slash, as most surfaces have, and before a colon all words
+/// up to it. A number has a digit.
 std::string shapeOf(const std::string& text) {
   std::string shape;
+  std::string word;
   char quote = 0;
+  const auto endWord = [&] {
+    const bool varies = std::ranges::any_of(
+        word, [](char c) { return c == '/' || std::isdigit(static_cast<unsigned char>(c)) != 0; });
+    if (!varies) shape += word + ' ';
+    if (varies && word.ends_with(':')) shape.clear();
+    word.clear();
+  };
   for (const char c : text) {
     if (quote != 0) {
       if (c == quote) quote = 0;
     } else if (c == '\'' || c == '"') {
       quote = c;
-    } else if (std::isdigit(static_cast<unsigned char>(c)) == 0) {
-      shape += c;
+    } else if (c == ' ') {
+      endWord();
+    } else {
+      word += c;
     }
   }
+  endWord();
   return shape;
 }
 

@@ -211,6 +211,16 @@ class Subcommands(CliTest):
             for key in keys:
                 self.assertIn(key, report[section])
 
+    def test_notes_that_differ_in_names_alone_are_printed_three_times(self):
+        names = ["oak/bark", "elm_top/leaf2", "the ash/bark", "yew/leaf", "fir/bark"]
+        lines = ["v 0 0 0", "v 1 0 0", "v 1 1 0", "v 2 0 0"]
+        for name in names:
+            lines += [f"o {name.split('/')[0]}", f"usemtl {name.split('/')[1]}", "f 1 2 3", "f 1 2 4"]
+        (self.folder / "trees.obj").write_text("\n".join(lines) + "\n")
+        err = self.run_program("info", "trees.obj").err
+        self.assertEqual(err.count("1 of 2 faces have no area"), 3)
+        self.assertRegex(err, r"1 of 2 faces have no area [^\n]* \(and 2 more like this\)")
+
     def test_a_pipe_gets_plain_text(self):
         run = self.run_program("render", "box.obj", *SMALL, "-o", "p.png")
         self.assertNotRegex(run.out + run.err, r"[\x00-\x09\x0b-\x1f\x7f]")

@@ -340,6 +340,19 @@ class OtherFormats(CliTest):
             np.testing.assert_array_equal(results["solution/reflectance"], [[1, 0, 1]])
         self.assertNotIn("two-sided", self.run_program("info", "a.ac").out)
 
+    def test_ac3d_of_racing_tracks(self):
+        """An object of TORCS has four layers of textures, and may have strips without any area alone."""
+        (self.folder / "paint.rgb").write_bytes(sgi([255, 0, 255]))
+        layers = 'texture "paint.rgb" base\ntexture "shadow.rgb" tiled\ntexture empty_texture_no_mapping skids\n'
+        track = AC3D.replace('texture "paint.rgb"\n', layers).replace("SURF 0x20", "SURF 0x10")
+        flat = track[track.index("OBJECT poly"):track.index("0 0 0\n1 1 0\n2")]
+        flat = flat.replace("wall", "sliver").replace("SURF 0x10", "SURF 0x14") + "0 0 0\n" * 4 + "kids 0\n"
+        surface, material = self.only_surface("a.acc", track.replace("kids 1", "kids 2") + flat)
+        self.assertEqual([surface["name"], surface["faces"], material["texture"]], ["wall/paint", 1, "paint.rgb"])
+        run = self.run_program("info", "a.acc")
+        self.assertIn("layers of textures other than the base are not used, texture: shadow.rgb", run.err)
+        self.assertIn("shapes without corners are left out: sliver", run.out)
+
     def test_dxf_is_read(self):
         """Up is z in drawings."""
         surface, _ = self.only_surface("a.dxf", DXF)

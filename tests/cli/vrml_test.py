@@ -51,6 +51,15 @@ class Vrml(CliTest):
                          [["a/PIN-01", 12], ["a/lacquer", 6], ["a/material 3", 12]])
         self.assertEqual([m["name"] for m in scene["materials"]], ["PIN-01", "lacquer", "material 3"])
 
+    def test_lines_and_points_are_left_out(self):
+        """Assimp refuses a whole file for a line of one point."""
+        line = "DEF rope Shape { geometry IndexedLineSet { coord Coordinate { point [ 0 0 0 ] } coordIndex [ 0, -1 ] } }"
+        points = "Shape { geometry PointSet { coord Coordinate { point [ 0 0 0, 1 0 0 ] } } }"
+        scene = self.scene(WALL + line + points)
+        self.assertEqual([s["name"] for s in scene["surfaces"]], ["wall/paint"])
+        self.assertIn("lines and points have no area and are left out, in: rope, without a name",
+                      self.run_program("info", "a.wrl").out)
+
     def test_line_ends_of_other_systems(self):
         for end in ["\r\n", "\r"]:
             with self.subTest(end=end):

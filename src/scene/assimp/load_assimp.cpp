@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -22,6 +21,7 @@
 #include "base/file_name.h"
 #include "base/finite.h"
 #include "base/input_file.h"
+#include "scene/assimp/ac3d_document.h"
 #include "scene/assimp/assimp_files.h"
 #include "scene/assimp/assimp_library.h"
 #include "scene/assimp/assimp_materials.h"
@@ -50,10 +50,13 @@ class AssimpReader {
     const std::string extension = lowerExtension(scene_.file);
     if (extension == ".dae") collada_.emplace(checkXml(scene_.file), notes_);
     const bool is_vrml = extension == ".wrl";
-    AssimpFiles rewritten([this](const std::string& path) { return rewrittenX3d(path); });
-    const File file = is_vrml               ? import(scene_.file + ".x3d", rewritten.io())
-                      : extension == ".x3d" ? import(scene_.file, rewritten.io())
-                                            : import(scene_.file, nullptr);
+    const bool is_ac3d = extension.starts_with(".ac");
+    AssimpFiles rewritten([this, is_ac3d](const std::string& path) {
+      return is_ac3d ? rewrittenAc3d(path) : rewrittenX3d(path);
+    });
+    const File file = is_vrml ? import(scene_.file + ".x3d", rewritten.io())
+                      : is_ac3d || extension == ".x3d" ? import(scene_.file, rewritten.io())
+                                                       : import(scene_.file, nullptr);
     if (file == nullptr || file->mRootNode == nullptr) {
       rewritten.rethrow();
       const std::string why = library_.getErrorString();
@@ -100,6 +103,7 @@ class AssimpReader {
 
   File import(const std::string& path, aiFileIO* files) const;
   std::string rewrittenX3d(const std::string& path);
+  std::string rewrittenAc3d(const std::string& path);
   const X3dShape* x3dShape(const aiNode& node) const;
   std::map<unsigned, std::string> x3dMaterials(const aiScene& file) const;
   std::string objectName(const aiNode& node, const aiMesh& mesh) const;
@@ -136,9 +140,12 @@ AssimpReader::File AssimpReader::import(const std::string& path, aiFileIO* files
   library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
   // Assimp must not add octahedra for nodes if a file has no meshes.
   library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-  return {library_.importFileExWithProperties(
-              path.c_str(), aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords, files,
-              wishes.get()),
+  // Of AC3D, a mesh all of whose strips are slivers without an area has no vertices, at which the
+  // check of the whole file fails.
+  const bool is_ac3d = lowerExtension(path).starts_with(".ac");
+  const unsigned check = is_ac3d ? 0U : unsigned(aiProcess_ValidateDataStructure);
+  return {library_.importFileExWithProperties(path.c_str(), check | aiProcess_TransformUVCoords,
+                                              files, wishes.get()),
           library_.releaseImport};
 }
 
@@ -155,6 +162,18 @@ std::string AssimpReader::rewrittenX3d(const std::string& path) {
   std::ostringstream out;
   document.save(out, "", pugi::format_raw);
   return out.str();
+}
+
+std::string AssimpReader::rewrittenAc3d(const std::string& path) {
+  const std::string content = readWholeFile(path);
+  checkAc3dNesting(path, content);
+  if (const std::size_t faces = twoSidedFacesOfAc3d(content); faces > 0) {
+    scene_.notes.push_back(
+        {Severity::info, fmt::format("faces that are two-sided in the file are read one-sided "
+                                     "({}); use --two-sided NAME where backs are seen",
+                                     faces)});
+  }
+  return rewriteAc3d(content, notes_);
 }
 
 /// Calls visit(node, place) for all nodes, each before its children. (There is no recursion, since
@@ -292,6 +311,7 @@ std::vector<Vec3> AssimpReader::coloursOf(const aiMesh& mesh, const std::string&
 
 void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place) {
   const std::string object = objectName(node, mesh);
+  if (mesh.mNumVertices == 0) return notes_.add("shapes without corners are left out", object);
   const std::size_t first = scene_.vertices.size();
   if (first + mesh.mNumVertices >= kNone) fail("too many vertices; split the scene");
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
@@ -414,37 +434,14 @@ void requireWhole3ds(const std::string& path) {
   }
 }
 
-/// Assimp loses the sides of AC3D's surfaces: SURF has type and flags, 0x20 being "two-sided".
-void noteTwoSidedAc3d(Scene& scene) {
-  constexpr std::string_view kKeyword = "SURF 0x";
-  constexpr unsigned kTwoSided = 0x20;
-  const std::string content = readWholeFile(scene.file);
-  std::size_t count = 0;
-  for (std::size_t at = content.find(kKeyword); at != std::string::npos;
-       at = content.find(kKeyword, at)) {
-    at += kKeyword.size();
-    unsigned flags = 0;
-    std::from_chars(content.data() + at, content.data() + content.size(), flags, 16);
-    if ((flags & kTwoSided) != 0) ++count;
-  }
-  if (count == 0) return;
-  scene.notes.push_back(
-      {Severity::info, fmt::format("faces that are two-sided in the file are read one-sided ({}); "
-                                   "use --two-sided NAME where backs are seen",
-                                   count)});
-}
-
 }  // namespace
 
 Scene loadAssimp(const std::string& path, const SceneOptions& options) {
   const std::string extension = lowerExtension(path);
   if (extension == ".3ds") requireWhole3ds(path);
   if (extension == ".fbx") checkFbxNesting(path, readWholeFile(path));
-  if (extension.starts_with(".ac")) checkAc3dNesting(path, readWholeFile(path));
   if (extension == ".b3d") checkBlitz3dNesting(path, readWholeFile(path));
-  Scene scene = AssimpReader(path, options).read();
-  if (extension.starts_with(".ac")) noteTwoSidedAc3d(scene);
-  return scene;
+  return AssimpReader(path, options).read();
 }
 
 }  // namespace radiosity

@@ -29,12 +29,11 @@ const std::set<std::string_view> kGroups = {"Anchor",   "Billboard",  "Collision
                                             "LayerSet", "LayoutGroup"};
 const std::set<std::string_view> kRead = {"Scene",     "Shape",  "Group",  "StaticGroup",
                                           "Transform", "Switch", "Inline", "LOD"};
-const std::set<std::string_view> kGeometry = {"Arc2D",
-                                              "ArcClose2D",
-                                              "Circle2D",
+/// Geometry without faces.
+const std::set<std::string_view> kLines = {
+    "Arc2D", "Circle2D", "Polyline2D", "Polypoint2D", "IndexedLineSet", "LineSet", "PointSet"};
+const std::set<std::string_view> kGeometry = {"ArcClose2D",
                                               "Disk2D",
-                                              "Polyline2D",
-                                              "Polypoint2D",
                                               "Rectangle2D",
                                               "TriangleSet2D",
                                               "Box",
@@ -44,9 +43,6 @@ const std::set<std::string_view> kGeometry = {"Arc2D",
                                               "Extrusion",
                                               "Sphere",
                                               "IndexedFaceSet",
-                                              "IndexedLineSet",
-                                              "LineSet",
-                                              "PointSet",
                                               "IndexedTriangleSet",
                                               "IndexedTriangleFanSet",
                                               "TriangleFanSet",
@@ -265,11 +261,16 @@ class Rewriter {
       next = child.next_sibling();
       if (child.type() != pugi::node_element) continue;
       const std::string_view kind = child.name();
+      if (kLines.contains(kind)) {
+        return leaveOut(parent, shape, "lines and points have no area and are left out, in", name);
+      }
       if (kGeometry.contains(kind)) {
         found.two_sided |= !child.attribute("solid").as_bool(true);
         found.clockwise |= !child.attribute("ccw").as_bool(true);
         if (kind == "Cone" || kind == "Cylinder") replaceRound(shape, child);
-        if (kind.ends_with("Set") && isEmptySet(child)) return noteEmpty(parent, shape, name);
+        if (kind.ends_with("Set") && isEmptySet(child)) {
+          return leaveOut(parent, shape, "shapes without corners are left out", name);
+        }
       } else if (!kBesideGeometry.contains(kind)) {
         notes_.add("shapes of X3D that are not read", std::string(kind), Severity::warning);
         parent.remove_child(shape);
@@ -298,8 +299,9 @@ class Rewriter {
     return corners.find_first_not_of(" ,\t\r\n") == std::string_view::npos;
   }
 
-  void noteEmpty(pugi::xml_node parent, pugi::xml_node shape, const std::string& name) {
-    notes_.add("shapes without corners are left out", name.empty() ? "without a name" : name);
+  void leaveOut(pugi::xml_node parent, pugi::xml_node shape, const char* why,
+                const std::string& name) {
+    notes_.add(why, name.empty() ? "without a name" : name);
     parent.remove_child(shape);
   }
 
