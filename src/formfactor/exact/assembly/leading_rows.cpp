@@ -32,6 +32,9 @@ struct LeadingRows::Triangle {
 
 namespace {
 
+/// Places of a sample: fewer than of all rows, since these rows are a small part of the work.
+constexpr std::size_t kLeadingSteps = 24;
+
 std::vector<std::uint8_t> patchesOf(const PatchMesh& mesh, std::span<const Index> wanted) {
   std::vector<std::uint8_t> flags(mesh.size(), 0);
   for (Index i = 0; i < mesh.size(); ++i) {
@@ -130,7 +133,7 @@ LeadingRows::LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted,
       scene_(mesh, progress, patchesOf(mesh, wanted_)) {}
 
 RowSample LeadingRows::sample(Progress& progress) const {
-  return samplePairs(scene_, scene_.leadingTasks(), progress);
+  return samplePairs(scene_, scene_.leadingTasks(), kLeadingSteps, progress);
 }
 
 double LeadingRows::work(RowSample& sample) const {

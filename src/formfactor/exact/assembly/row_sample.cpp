@@ -191,7 +191,7 @@ void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, Fa
 }  // namespace
 
 RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress) {
-  RowSample sample = samplePairs(scene, scene.tasks.size(), progress);
+  RowSample sample = samplePairs(scene, scene.tasks.size(), kSampleSteps, progress);
   foreseeCost(scene, tolerance, sample);
   return sample;
 }
@@ -206,7 +206,8 @@ void foreseeCost(const ExactScene& scene, double tolerance, RowSample& sample) {
   }
 }
 
-RowSample samplePairs(const ExactScene& scene, std::size_t tasks, Progress& progress) {
+RowSample samplePairs(const ExactScene& scene, std::size_t tasks, std::size_t steps,
+                      Progress& progress) {
   // Pairs of two walls, and of a wall and a small facet, are classes of their own: few of the rows,
   // and much of the work.
   const std::array<std::vector<ElementRange>, 2> ranges = {
@@ -215,8 +216,7 @@ RowSample samplePairs(const ExactScene& scene, std::size_t tasks, Progress& prog
   const std::size_t row_classes = (ranges[0].empty() ? 0U : 1U) + (ranges[1].empty() ? 0U : 1U);
   for (const std::vector<ElementRange>& rows : ranges) {
     for (const FacetSize columns : {FacetSize::large, FacetSize::small}) {
-      addPlaces(scene, rows, columns, kSampleSteps / (2 * std::max<std::size_t>(row_classes, 1)),
-                places);
+      addPlaces(scene, rows, columns, steps / (2 * std::max<std::size_t>(row_classes, 1)), places);
     }
   }
   RowSample sample;

@@ -59,15 +59,16 @@ struct RowSample {
   double all_places = 1;
 };
 
-/// The most steps of progress.
+/// The most steps of progress, and places, of a sample of all rows.
 inline constexpr std::size_t kSampleSteps = 96;
 
-/// Some rows in up to kSampleSteps places, of large facets and of small ones, against later facets
+/// Some rows in up to `steps` places, of large facets and of small ones, against later facets
 /// of many elements or of few: all of these, or every n-th if there are very many. The work has a
 /// bound, in tests and pairs and not by the clock, so that the counts come out the same in every
 /// run. Of the rows of the first tasks; `cost` is left to foreseeCost(). Steps `progress`; calls
 /// its check().
-RowSample samplePairs(const ExactScene& scene, std::size_t tasks, Progress& progress);
+RowSample samplePairs(const ExactScene& scene, std::size_t tasks, std::size_t steps,
+                      Progress& progress);
 /// Foresees what the sampled pairs cost to this tolerance.
 void foreseeCost(const ExactScene& scene, double tolerance, RowSample& sample);
 /// Both, of all rows.
