@@ -122,9 +122,10 @@ double usualNorm(const RayScene& scene, const std::vector<FirstLook>& looks, con
 }
 
 /// Chooses rows by how many rays they seem to need: few rows take most of them, and would be missed
-/// or met twice by an even choice. A row is chosen with a probability half of which is even. What
-/// it stands for is the inverse of that (Horvitz & Thompson, "A generalization of sampling without
-/// replacement from a finite universe", J. Am. Stat. Assoc. 47, 1952).
+/// or met twice by an even choice. A row is chosen with a probability half of which is even, and
+/// with certainty where all can be. What it stands for is the inverse of that (Horvitz & Thompson,
+/// "A generalization of sampling without replacement from a finite universe", J. Am. Stat. Assoc.
+/// 47, 1952).
 std::vector<SampledRow> chooseRows(const std::vector<FirstLook>& looks, std::size_t all,
                                    const Need& need, double tolerance) {
   std::vector<double> needed;
@@ -138,8 +139,9 @@ std::vector<SampledRow> chooseRows(const std::vector<FirstLook>& looks, std::siz
   std::vector<SampledRow> rows;
   double until = 0;  // probabilities, times `most`
   for (std::size_t k = 0; k < looks.size(); ++k) {
-    const double even = 1 / double(looks.size());
-    const double chance = double(most) * (sum > 0 ? 0.5 * (even + needed[k] / sum) : even);
+    const double even = double(most) / double(looks.size());
+    const bool is_even = looks.size() <= kMostRows || !(sum > 0);
+    const double chance = is_even ? even : 0.5 * (even + double(most) * needed[k] / sum);
     // Systematic: at the middle of each unit of the running sum.
     const double times = std::floor(until + chance + 0.5) - std::floor(until + 0.5);
     until += chance;
