@@ -16,10 +16,17 @@ namespace radiosity {
 namespace {
 
 /// A floor with a low wall at its edge: the rows near the edge take most of the rays.
-PatchMesh floorAndWall() {
+test::MeshBuilder floorAndWall(int n) {
   test::MeshBuilder builder;
-  builder.grid("floor", Vec3(0), Vec3(6, 0, 0), Vec3(0, 6, 0), 40, 40);
-  builder.grid("wall", Vec3(0), Vec3(0, 6, 0), Vec3(0, 0, 0.3), 40, 2);
+  builder.grid("floor", Vec3(0), Vec3(6, 0, 0), Vec3(0, 6, 0), n, n);
+  builder.grid("wall", Vec3(0), Vec3(0, 6, 0), Vec3(0, 0, 0.3), n, 2);
+  return builder;
+}
+
+/// The same above a plain of four patches, which has most of the area and sees next to nothing.
+PatchMesh aboveAPlain() {
+  test::MeshBuilder builder = floorAndWall(25);
+  builder.grid("plain", Vec3(-12, -12, -1), Vec3(30, 0, 0), Vec3(0, 30, 0), 2, 2);
   return builder.build();
 }
 
@@ -34,15 +41,17 @@ double countedOverForeseen(const PatchMesh& mesh, double tolerance, std::uint64_
   return counted / estimateRays(RayScene(mesh, seed), options, silent).rays;
 }
 
-// Of nine seeds, counted rays of these meshes were .93 to 1.24 times those foreseen.
-TEST(RayEstimate, RaysAreForeseenWithinAHalf) {
+// Counted rays of these meshes were .93 to 1.5 times those foreseen, for all of nine seeds about
+// the same: the model of a row's error is that rough.
+TEST(RayEstimate, RaysAreForeseenWithinAFactorOfTwo) {
   const std::vector<std::pair<const char*, PatchMesh>> meshes = {
       {"two rooms", test::meshOf(test::dataScene("two-rooms"), 500)},
       {"curved", test::meshOf(test::dataScene("curved"), 1500)},
-      {"floor and wall", floorAndWall()}};
+      {"floor and wall", floorAndWall(40).build()},
+      {"above a plain", aboveAPlain()}};
   for (const auto& [name, mesh] : meshes) {
     for (const std::uint64_t seed : {1, 2}) {
-      const double ratio = countedOverForeseen(mesh, 2e-2, seed);
+      const double ratio = countedOverForeseen(mesh, 3e-2, seed);
       EXPECT_LT(ratio, 1.5) << name << ", seed " << seed;
       EXPECT_GT(ratio, 1 / 1.5) << name << ", seed " << seed;
     }

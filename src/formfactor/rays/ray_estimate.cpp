@@ -1,6 +1,7 @@
 // The cost of rays, foreseen: some rows are cast, and their errors followed.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "base/parallel.h"
@@ -14,8 +15,8 @@
 namespace radiosity {
 namespace {
 
-/// Rows looked at with kFewRays, evenly by position: these tell the norm of a usual row. Of these,
-/// up to kMostRows are cast with kManyRays, to see how their errors fall.
+/// Rows looked at with kFewRays: these tell the norm of a usual row. Of these, up to kMostRows are
+/// cast with kManyRays, to see how their errors fall.
 constexpr std::size_t kMostFirstRows = 512;
 constexpr std::size_t kMostRows = 96;
 /// Rays in each replicate.
@@ -25,6 +26,7 @@ constexpr std::uint32_t kManyRays = 8 * kPilotRays;
 /// A row by kFewRays.
 struct FirstLook {
   std::size_t position = 0;
+  double stands_for = 0;  ///< rows, itself included
   RowAccuracy accuracy;
   double sky = 0;  ///< its share of the rays
 };
@@ -53,11 +55,12 @@ double visibleEntries(const RayRow& row) {
   return double(row.columns.size()) + once * (once - 1) / (2 * (twice + 1));
 }
 
-FirstLook lookAt(const RayScene& scene, std::size_t position, const Progress& progress) {
+void lookAt(const RayScene& scene, FirstLook& look, const Progress& progress) {
   RayRow row;
-  scene.cast(position, kFewRays, row, progress);
-  if (progress.cancelled()) return {};
-  return {position, accuracyAlone(row, scene.size()), row.skyShare()};
+  scene.cast(look.position, kFewRays, row, progress);
+  if (progress.cancelled()) return;
+  look.accuracy = accuracyAlone(row, scene.size());
+  look.sky = row.skyShare();
 }
 
 void castMore(const RayScene& scene, SampledRow& sampled, const Progress& progress) {
@@ -96,60 +99,95 @@ void moderate(std::vector<SampledRow>& rows) {
 
 /// What rows have in common that says how many rays each needs.
 struct Need {
-  double usual = 0;  ///< norm of a usual row
   double sky_weight = 0;
+  double usual = 0;            ///< norm of a usual row
+  double usual_whole = 0;      ///< the same with black backs
   double order = kUsualOrder;  ///< at which error squared falls
 
   double normOf(const RowAccuracy& accuracy, double sky) const {
     return std::hypot(accuracy.norm, sky_weight * sky);
   }
-  /// Rays of a row in each replicate for this tolerance, from its error with `rays` of them.
+  /// Rays of a row in each replicate for this tolerance, from its errors with `rays` of them: as
+  /// Rounds::relativeError(). Other rows' counts do not help with backs.
   double rays(const RowAccuracy& accuracy, double sky, double rays, double tolerance) const {
-    const double norm = std::max(normOf(accuracy, sky), usual);
-    if (!(norm > 0)) return 0;
-    const double over = accuracy.error / (norm * tolerance);
+    const double norm = normOf(accuracy, sky);
+    const double whole = std::max(std::hypot(norm, accuracy.backs_norm), usual_whole);
+    if (!(whole > 0)) return 0;
+    const double of_fronts =
+        std::max(norm, usual) > 0 ? accuracy.error / std::max(norm, usual) : 0.0;
+    const double of_backs = accuracy.backs_error / whole;
+    const double square = std::max(kMerged * of_fronts * of_fronts, of_backs * of_backs);
     // Beyond kMostRays rows are given up and miss the tolerance: then this is too long.
-    return std::max(double(kPilotRays), rays * std::pow(kMerged * over * over, 1 / order));
+    return std::max(double(kPilotRays),
+                    rays * std::pow(square / (tolerance * tolerance), 1 / order));
   }
 };
 
-double usualNorm(const RayScene& scene, const std::vector<FirstLook>& looks, const Need& need) {
+void setUsualNorms(const RayScene& scene, const std::vector<FirstLook>& looks, Need& need) {
   UsualNorm usual;
+  UsualNorm whole;
   for (const FirstLook& look : looks) {
-    usual.add(need.normOf(look.accuracy, look.sky), scene.area()[look.position]);
+    const double norm = need.normOf(look.accuracy, look.sky);
+    const double area = look.stands_for * scene.area()[look.position];
+    usual.add(norm, area);
+    whole.add(std::hypot(norm, look.accuracy.backs_norm), area);
   }
-  return usual.value();
+  need.usual = usual.value();
+  need.usual_whole = whole.value();
 }
 
-/// Chooses rows by how many rays they seem to need: few rows take most of them, and would be missed
-/// or met twice by an even choice. A row is chosen with a probability half of which is even, and
-/// with certainty where all can be. What it stands for is the inverse of that (Horvitz & Thompson,
-/// "A generalization of sampling without replacement from a finite universe", J. Am. Stat. Assoc.
-/// 47, 1952).
-std::vector<SampledRow> chooseRows(const std::vector<FirstLook>& looks, std::size_t all,
-                                   const Need& need, double tolerance) {
-  std::vector<double> needed;
-  double sum = 0;
-  for (const FirstLook& look : looks) {
-    needed.push_back(need.rays(look.accuracy, look.sky, kFewRays, tolerance));
-    sum += needed.back();
-  }
-  const std::size_t most = std::min(looks.size(), kMostRows);
-  const double of_each = looks.empty() ? 0.0 : double(all) / double(looks.size());
-  std::vector<SampledRow> rows;
-  double until = 0;  // probabilities, times `most`
-  for (std::size_t k = 0; k < looks.size(); ++k) {
-    const double even = double(most) / double(looks.size());
-    const bool is_even = looks.size() <= kMostRows || !(sum > 0);
-    const double chance = is_even ? even : 0.5 * (even + double(most) * needed[k] / sum);
+/// One that was chosen among others.
+struct Chosen {
+  std::size_t which = 0;
+  double stands_for = 0;  ///< of the others, itself included
+};
+
+/// Chooses up to `most`, with probabilities that are half even and half by weight, and with
+/// certainty where all can be chosen. What one stands for is the inverse of its probability
+/// (Horvitz & Thompson, "A generalization of sampling without replacement from a finite universe",
+/// J. Am. Stat. Assoc. 47, 1952).
+std::vector<Chosen> choose(const std::vector<double>& weights, std::size_t most) {
+  most = std::min(most, weights.size());
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const bool is_even = most == weights.size() || !(sum > 0);
+  std::vector<Chosen> chosen;
+  double until = 0;  // sum of probabilities
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const double even = double(most) / double(weights.size());
+    const double chance = is_even ? even : 0.5 * (even + double(most) * weights[k] / sum);
     // Systematic: at the middle of each unit of the running sum.
     const double times = std::floor(until + chance + 0.5) - std::floor(until + 0.5);
     until += chance;
-    if (times > 0) {
-      rows.emplace_back();
-      rows.back().position = looks[k].position;
-      rows.back().stands_for = of_each * times / chance;
-    }
+    if (times > 0) chosen.push_back({k, times / chance});
+  }
+  return chosen;
+}
+
+/// Rows to look at. Few large ones may decide the norm of a usual row.
+std::vector<FirstLook> chooseLooks(const RayScene& scene) {
+  std::vector<FirstLook> looks;
+  for (const auto& [position, stands_for] : choose(scene.area(), kMostFirstRows)) {
+    looks.emplace_back();
+    looks.back().position = position;
+    looks.back().stands_for = stands_for;
+  }
+  return looks;
+}
+
+/// Of the rows looked at, those to be cast with more rays. Few rows need most of the rays, and
+/// would be missed or met twice by an even choice.
+std::vector<SampledRow> chooseRows(const std::vector<FirstLook>& looks, const Need& need,
+                                   double tolerance) {
+  std::vector<double> needed;
+  needed.reserve(looks.size());
+  for (const FirstLook& look : looks) {
+    needed.push_back(look.stands_for * need.rays(look.accuracy, look.sky, kFewRays, tolerance));
+  }
+  std::vector<SampledRow> rows;
+  for (const auto& [which, stands_for] : choose(needed, kMostRows)) {
+    rows.emplace_back();
+    rows.back().position = looks[which].position;
+    rows.back().stands_for = stands_for * looks[which].stands_for;
   }
   return rows;
 }
@@ -259,17 +297,17 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
                          Progress& progress) {
   const std::size_t n = scene.size();
   const RayAim aim(options);
-  std::vector<FirstLook> looks(std::min(n, kMostFirstRows));
-  progress.begin("planning", looks.size() + std::min(n, kMostRows));
+  std::vector<FirstLook> looks = chooseLooks(scene);
+  progress.begin("planning", looks.size() + std::min(looks.size(), kMostRows));
   parallelFor(looks.size(), 1, [&](std::size_t k) {
-    looks[k] = lookAt(scene, (2 * k + 1) * n / (2 * looks.size()), progress);
+    lookAt(scene, looks[k], progress);
     progress.advance();
   });
   progress.check();
   moderate(looks);
-  Need need{0, aim.sky_weight};
-  need.usual = usualNorm(scene, looks, need);
-  std::vector<SampledRow> rows = chooseRows(looks, n, need, aim.tolerance);
+  Need need{aim.sky_weight};
+  setUsualNorms(scene, looks, need);
+  std::vector<SampledRow> rows = chooseRows(looks, need, aim.tolerance);
   parallelFor(rows.size(), 1, [&](std::size_t k) {
     castMore(scene, rows[k], progress);
     progress.advance();

@@ -248,6 +248,17 @@ void addAlone(const RayRow& row, std::size_t e, ReplicateSums& sums) {
   sums.add(first, second, foreseenVariance(0.5 * (first + second), hits));
 }
 
+/// Adds the black backs that a row sees, whose columns come from `unknowns` on.
+void addBacks(const RayRow& row, std::size_t unknowns, RowAccuracy& accuracy) {
+  ReplicateSums backs;
+  for (std::size_t e = row.columns.size(); e-- > 0 && row.columns[e] >= unknowns;) {
+    addAlone(row, e, backs);
+  }
+  const RowAccuracy of_backs = backs.accuracy();
+  accuracy.backs_norm = of_backs.norm;
+  accuracy.backs_error = of_backs.error;
+}
+
 }  // namespace
 
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) {
@@ -255,16 +266,11 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
   for (std::size_t e = 0; e < merged.factors.size(); ++e) {
     sums.add(merged.factors[e][0], merged.factors[e][1], merged.variances[e]);
   }
-  ReplicateSums backs;
-  for (std::size_t e = merged.all_known ? 0 : own.columns.size(); e-- > 0;) {
-    if (own.columns[e] < merged.unknowns) break;
-    addAlone(own, e, backs);
-  }
   RowAccuracy accuracy = sums.accuracy();
-  const RowAccuracy of_backs = backs.accuracy();
-  accuracy.backs_norm = of_backs.norm;
-  accuracy.backs_error = of_backs.error;
-  if (!merged.all_known) accuracy.rays = own.counted();
+  if (!merged.all_known) {
+    addBacks(own, merged.unknowns, accuracy);
+    accuracy.rays = own.counted();
+  }
   double squares = 0;
   double fourths = 0;
   for (const KnownEntries::Entry& entry : merged.known) {
@@ -281,7 +287,9 @@ RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns) {
   for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < unknowns; ++e) {
     addAlone(row, e, sums);
   }
-  return sums.accuracy();
+  RowAccuracy accuracy = sums.accuracy();
+  addBacks(row, unknowns, accuracy);
+  return accuracy;
 }
 
 }  // namespace radiosity

@@ -98,8 +98,7 @@ class UsualNorm {
 /// m^2.
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area);
 
-/// The same for a row by itself, before it is merged with the others' counts; without backs, which
-/// come from column `unknowns` on.
+/// The same for a row by itself, before it is merged with the others' counts.
 RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns);
 
 }  // namespace radiosity
