@@ -41,9 +41,8 @@ double countedOverForeseen(const PatchMesh& mesh, double tolerance, std::uint64_
   return counted / estimateRays(RayScene(mesh, seed), options, silent).rays;
 }
 
-// Counted rays of these meshes were .93 to 1.5 times those foreseen, for all of nine seeds about
-// the same: the model of a row's error is that rough.
-TEST(RayEstimate, RaysAreForeseenWithinAFactorOfTwo) {
+// Counted rays of these meshes were .91 to 1.25 times those foreseen, to 2e-2 and to 3e-2.
+TEST(RayEstimate, RaysAreForeseenWithinAHalf) {
   const std::vector<std::pair<const char*, PatchMesh>> meshes = {
       {"two rooms", test::meshOf(test::dataScene("two-rooms"), 500)},
       {"curved", test::meshOf(test::dataScene("curved"), 1500)},
