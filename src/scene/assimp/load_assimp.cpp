@@ -207,13 +207,15 @@ const X3dShape* AssimpReader::x3dShape(const aiNode& node) const {
   return number && *number < x3d_shapes_.size() ? &x3d_shapes_[*number] : nullptr;
 }
 
-/// Names of X3D's materials, by their numbers.
+/// Names of the materials of X3D's meshes, by their numbers; nothing for other formats.
 std::map<unsigned, std::string> AssimpReader::x3dMaterials(const aiScene& file) const {
   std::map<unsigned, std::string> names;
+  if (x3d_shapes_.empty()) return names;
   forNodes(file, [&](const aiNode& node, const aiMatrix4x4&) {
     const X3dShape* const shape = x3dShape(node);
-    for (unsigned k = 0; shape != nullptr && k < node.mNumMeshes; ++k) {
-      names[file.mMeshes[node.mMeshes[k]]->mMaterialIndex] = shape->material;
+    for (unsigned k = 0; k < node.mNumMeshes; ++k) {
+      names[file.mMeshes[node.mMeshes[k]]->mMaterialIndex] =
+          shape == nullptr ? "" : shape->material;
     }
   });
   return names;
