@@ -155,7 +155,7 @@ struct ExactReport {
   double recheck_ratio = 0;
 
   /// Processor seconds by stage, summed over threads; preparing and finishing by the clock.
-  double seconds_prepare = 0;     ///< elements, occluders, estimates
+  double seconds_prepare = 0;     ///< elements, occluders, kernels
   double seconds_visibility = 0;  ///< classifying pairs
   double seconds_unoccluded = 0;  ///< closed forms and quadrature
   double seconds_occluded = 0;    ///< clipping
@@ -201,8 +201,8 @@ struct FormFactorReport {
   std::size_t capped = 0;               ///< rows whose near entries were limited to a sum of 1
   std::string simd_target;              ///< Highway's name, e.g. "AVX3", "SCALAR"
   double seconds = 0;                   ///< in total
-  double seconds_plan = 0;              ///< of these, for the plan, including its preparation
-  double estimated_seconds = 0;         ///< the others, as estimated before the run
+  double seconds_plan = 0;              ///< of these, for the plan, without seconds_prepare
+  double estimated_seconds = 0;         ///< the others, as estimated when they were planned
   std::size_t matrix_bytes = 0;
   std::size_t estimated_bytes = 0;  ///< as estimated before the run
   double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method

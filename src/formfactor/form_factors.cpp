@@ -41,7 +41,9 @@ struct FormFactorPlan::Prepared {
   std::optional<RayScene> rays;
   RayEstimate ray_estimate;
   std::optional<LeadingRows> exact_rows;  ///< computed beside rays
-  double seconds = 0;                     ///< of planning
+  double seconds = 0;                     ///< of all this
+  double seconds_exact = 0;               ///< of these, for the scene and kernels of exact
+  double seconds_rays = 0;                ///< of these, for the scene of rays and exact_rows
 };
 
 namespace {
@@ -63,14 +65,19 @@ std::string secondsText(double seconds) {
   return fmt::format("about {} s", countText(std::size_t(std::llround(seconds))));
 }
 
-/// A look at exact samples its rows. It may take this share of the seconds that exact may take, so
-/// that it stays small beside the work, and as long as kFirstLookSeconds the first time, then
+/// A look at exact samples its rows. It may take this share of the seconds that the work may take,
+/// so that it stays small beside it, and as long as kFirstLookSeconds the first time, then
 /// kLookSeconds. If exact is foreseen to take no more than kNoFurtherLookSeconds, rays are not
 /// looked at.
-constexpr double kLookShare = 0.03;
-constexpr double kFirstLookSeconds = 0.2;
-constexpr double kLookSeconds = 0.5;
+constexpr double kLookShare = 0.02;
+constexpr double kFirstLookSeconds = 0.15;
+constexpr double kLookSeconds = 0.3;
 constexpr double kNoFurtherLookSeconds = 0.5;
+/// What could not be prepared in the first look would hardly be sampled in a second one shorter
+/// than this.
+constexpr double kLookUnprepared = 1;
+/// A look clips pairs for this long, in seconds of processors.
+constexpr double kClipSeconds = 0.25;
 
 /// The seconds that exact may take and still be chosen. With shared unknowns it must be the faster
 /// one: an error of their light is larger than that of either method's form factors.
@@ -99,23 +106,27 @@ void takeMemory(const RowMemory& memory, FormFactorPlan& plan) {
 void planExact(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   const FormFactorOptions& options = prepared.options;
   if (!prepared.scene) {
+    const Stopwatch watch;
     progress.begin("preparing", ExactScene::kSteps);
     prepared.scene.emplace(prepared.mesh, progress);
     progress.end();
+    prepared.seconds_exact += watch.seconds();
   }
   const ExactScene& scene = *prepared.scene;
-  if (!prepared.sample) {
-    prepared.sample = sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), progress);
-  }
-  const RowSample& sample = *prepared.sample;
+  RowSample& sample = prepared.sample ? *prepared.sample : prepared.sample.emplace();
+  sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), sample, progress);
   prepared.estimate = estimateExact(scene, sample, options);
   addClusters(prepared, true, prepared.estimate);
-  const ExactKernels& kernels = prepared.kernels.emplace(scene, options);
+  if (!prepared.kernels) {
+    const Stopwatch watch;
+    prepared.kernels.emplace(scene, options);
+    prepared.seconds_exact += watch.seconds();
+  }
   plan.method = FormFactorMethod::exact;
   plan.tolerance = options.toleranceOf(FormFactorMethod::exact);
   takeMemory(prepared.estimate.memory, plan);
   plan.matrix_bytes = prepared.estimate.matrix_bytes;
-  plan.seconds = exactSeconds(scene, kernels, sample, options, progress);
+  plan.seconds = exactSeconds(scene, *prepared.kernels, sample, options, kClipSeconds, progress);
   plan.refining =
       prepared.estimate.work > 0 ? prepared.estimate.refining / prepared.estimate.work : 0.0;
   prepared.sample.reset();
@@ -144,6 +155,10 @@ constexpr std::array<double, 2> kExactRowTolerances{FormFactorOptions::kExactTol
 /// and in any case kLittleExactRowWork, about two seconds of a core.
 constexpr double kExactRowWork = 7;
 constexpr double kLittleExactRowWork = 2e8;
+/// Preparing exact rows is about this much work for each patch. It may be kPreparedShare of what
+/// the rows may be, so that rows that turn out to be too much have not cost long.
+constexpr double kPreparedWork = 3000;
+constexpr double kPreparedShare = 0.25;
 /// At most this many pairs may be in exact rows: all are held at once, in 112 bytes each.
 constexpr std::size_t kMostExactPairs = 1'000'000;
 
@@ -160,18 +175,22 @@ void requireUnknowns(const std::vector<Index>& rows, std::size_t unknowns) {
 void planExactRows(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
   const std::vector<Index>& wanted = prepared.options.exact_rows;
   const std::size_t pairs = wanted.size() * prepared.mesh.unknowns();
+  const double most = std::max(kLittleExactRowWork, kExactRowWork * prepared.ray_estimate.rays);
   if (wanted.empty() || pairs > kMostExactPairs) return;
+  if (kPreparedWork * double(prepared.mesh.size()) > kPreparedShare * most) return;
+  const Stopwatch watch;
   progress.begin("preparing", ExactScene::kSteps);
   LeadingRows& rows =
       prepared.exact_rows.emplace(prepared.mesh, wanted, prepared.options, progress);
   progress.end();
+  const double preparing = watch.seconds();
   RowSample sample = rows.sample(progress);
-  const double most = std::max(kLittleExactRowWork, kExactRowWork * prepared.ray_estimate.rays);
   for (const double tolerance : kExactRowTolerances) {
     rows.setTolerance(std::min(prepared.options.toleranceOf(FormFactorMethod::rays), tolerance));
     if (rows.work(sample) > most) continue;
     plan.seconds += rows.seconds(sample, progress);
     plan.bytes += rows.bytes() + KnownEntries::bytes(pairs);
+    prepared.seconds_rays += preparing;
     return;
   }
   prepared.exact_rows.reset();
@@ -191,12 +210,11 @@ void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress
   progress.begin("preparing", 1);
   const Stopwatch watch;
   const RayScene& scene = prepared.rays.emplace(prepared.mesh, prepared.options.seed);
-  const double preparing = watch.seconds();
+  prepared.seconds_rays = watch.seconds();
   progress.advance();
   progress.end();
   progress.check();
   prepared.ray_estimate = estimateRays(scene, prepared.options, progress);
-  prepared.ray_estimate.seconds_prepare = preparing;
   plan.method = FormFactorMethod::rays;
   takeMemory(prepared.ray_estimate.memory, plan);
   plan.matrix_bytes = prepared.ray_estimate.matrix_bytes;
@@ -236,8 +254,7 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
   const double ray_seconds = plan.seconds;
   const std::string ray_tolerance = fmt::format("{:.2g}", plan.tolerance);
   const double most = secondsExactMayTake(prepared, ray_seconds);
-  // What could not be prepared in the first look would hardly be sampled in a second as short.
-  const double least = prepared.scene ? 2 * kLookSeconds : kLookSeconds / kLookShare;
+  const double least = prepared.scene ? 2 * kLookSeconds : kLookUnprepared / kLookShare;
   if (!exact && most > least) {
     exact = lookAtExact(prepared, std::max(kLookSeconds, kLookShare * most), progress);
   }
@@ -332,7 +349,7 @@ FormFactors exactOf(const FormFactorPlan::Prepared& prepared, const ExactScene& 
                     Processes* processes) {
   FormFactors result = exactFactors(prepared.mesh, scene, kernels, prepared.estimate,
                                     prepared.options, progress, journal, processes);
-  result.report.exact.seconds_prepare += prepared.seconds;
+  result.report.exact.seconds_prepare += prepared.seconds_exact;
   return result;
 }
 
@@ -394,7 +411,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
     const double seconds_known = watch.seconds();
     result = rayFactors(prepared.mesh, *prepared.rays, std::move(known), prepared.ray_estimate,
                         prepared.options, progress, journal, processes);
-    result.report.rays.seconds_prepare += seconds_known;
+    result.report.rays.seconds_prepare = prepared.seconds_rays + seconds_known;
     noteRowsByRays(prepared, result.report);
   } else {
     throw std::logic_error("this plan was not prepared");
@@ -404,8 +421,12 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   }
   FormFactorReport& report = result.report;
   report.method_reason = plan.reason;
-  report.seconds_plan = prepared.seconds;
-  report.estimated_seconds = plan.seconds;
+  // What was prepared for the method is part of its work.
+  double preparing = 0;
+  if (plan.method == FormFactorMethod::exact) preparing = prepared.seconds_exact;
+  if (plan.method == FormFactorMethod::rays) preparing = prepared.seconds_rays;
+  report.seconds_plan = prepared.seconds - preparing;
+  report.estimated_seconds = preparing + plan.seconds;
   report.matrix_bytes = result.matrix.bytes();
   report.seconds = prepared.seconds + watch.seconds();
   return result;

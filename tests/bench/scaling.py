@@ -107,7 +107,7 @@ def unit_normal(a, b, c):
 
 def measured(report):
     factors, mesh = report["form_factors"], report["mesh"]
-    prepare = factors["seconds_plan"]
+    prepare = factors["seconds_plan"] + factors.get("seconds_prepare", 0)
     return {"faces": report["scene"]["faces"], "polygons": mesh["polygons"],
             "patches": mesh["patches"], "unknowns": mesh["unknowns"], "method": factors["method"],
             "mesh_s": report["stages"]["mesh"]["seconds"], "prepare_s": prepare,

@@ -22,7 +22,8 @@ namespace {
 ExactEstimate estimateOf(const PatchMesh& mesh, const FormFactorOptions& options) {
   Progress silent;
   const ExactScene scene(mesh, silent);
-  const RowSample sample = sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), silent);
+  RowSample sample;
+  sampleRows(scene, options.toleranceOf(FormFactorMethod::exact), sample, silent);
   return estimateExact(scene, sample, options);
 }
 

@@ -246,7 +246,6 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   balance(result);
   accountForBacks(mesh, scene.order(), result.matrix.area(), seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
-  report.rays.seconds_prepare = estimate.seconds_prepare;
   if (processes != nullptr) share(*processes, progress, result.matrix);
   return result;
 }

@@ -16,7 +16,6 @@ struct RayEstimate {
   double tolerance = 0;  ///< reached by these rays, which may stop before the one aimed at
   double seconds = 0;
   double seconds_to_tolerance = 0;  ///< for the tolerance aimed at
-  double seconds_prepare = 0;       ///< spent on the RayScene
   RowMemory memory;
   std::size_t matrix_bytes = 0;
 };

@@ -39,7 +39,8 @@ void printRows(const PatchMesh& mesh, const FormFactors& factors, const FormFact
 void printPoints(const PatchMesh& mesh, const ExactReport& report, double tolerance) {
   Progress silent;
   const ExactScene scene(mesh, silent);
-  const RowSample sample = radiosity::sampleRows(scene, tolerance, silent);
+  RowSample sample;
+  radiosity::sampleRows(scene, tolerance, sample, silent);
   const ExactEstimate estimate = estimateExact(scene, sample, exactly(tolerance));
   fmt::print("points {} {} {} {}\n", tolerance, estimate.occluded_pairs, estimate.points,
              report.points);

@@ -99,10 +99,10 @@ ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
 }
 
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
-                    const FormFactorOptions& options, Progress& progress) {
+                    const FormFactorOptions& options, double clip_seconds, Progress& progress) {
   progress.begin("trying rows", 1);
-  const RowTimes times =
-      timeRows(scene, kernels, options.toleranceOf(FormFactorMethod::exact), sample, progress);
+  const double tolerance = options.toleranceOf(FormFactorMethod::exact);
+  const RowTimes times = timeRows(scene, kernels, tolerance, clip_seconds, sample, progress);
   progress.advance();
   progress.end();
   return times.busy * (times.visibility + times.unoccluded + times.occluded) /

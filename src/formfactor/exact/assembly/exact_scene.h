@@ -52,7 +52,8 @@ struct RowSample;
 ExactEstimate estimateExact(const ExactScene& scene, const RowSample& sample,
                             const FormFactorOptions& options);
 /// Seconds by the clock on the threads allowed, at the rates that the sample has here and now.
+/// Pairs are clipped for `clip_seconds`, see timeRows().
 double exactSeconds(const ExactScene& scene, const ExactKernels& kernels, const RowSample& sample,
-                    const FormFactorOptions& options, Progress& progress);
+                    const FormFactorOptions& options, double clip_seconds, Progress& progress);
 
 }  // namespace radiosity

@@ -32,8 +32,10 @@ struct LeadingRows::Triangle {
 
 namespace {
 
-/// Places of a sample: fewer than of all rows, since these rows are a small part of the work.
+/// Places of a sample, and the seconds for which their pairs are clipped: less than of all rows,
+/// since these rows are a small part of the work.
 constexpr std::size_t kLeadingSteps = 24;
+constexpr double kLeadingClipSeconds = 0.06;
 
 std::vector<std::uint8_t> patchesOf(const PatchMesh& mesh, std::span<const Index> wanted) {
   std::vector<std::uint8_t> flags(mesh.size(), 0);
@@ -133,7 +135,9 @@ LeadingRows::LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted,
       scene_(mesh, progress, patchesOf(mesh, wanted_)) {}
 
 RowSample LeadingRows::sample(Progress& progress) const {
-  return samplePairs(scene_, scene_.leadingTasks(), kLeadingSteps, progress);
+  RowSample sample;
+  samplePairs(scene_, scene_.leadingTasks(), kLeadingSteps, sample, progress);
+  return sample;
 }
 
 double LeadingRows::work(RowSample& sample) const {
@@ -146,7 +150,8 @@ double LeadingRows::seconds(const RowSample& sample, Progress& progress) const {
   const double threads = double(allowedThreads());
   const double busy = std::min(threads, double(std::max<std::size_t>(scene_.leadingTasks(), 1)));
   return threads / busy *
-         exactSeconds(scene_, ExactKernels(scene_, options_), sample, options_, progress);
+         exactSeconds(scene_, ExactKernels(scene_, options_), sample, options_, kLeadingClipSeconds,
+                      progress);
 }
 
 std::size_t LeadingRows::bytes() const {

@@ -121,6 +121,7 @@ SampledPlace lookAt(const ExactScene& scene, std::size_t number, const SampledRa
 }
 
 void sumUp(double task_rows, RowSample& sum) {
+  sum.unoccluded = sum.occluded = sum.occluders = sum.shaft_tests = 0;
   double looked_at = 0;  // pairs that the places with a result stand for
   double all = 0;
   for (const SampledPlace& place : sum.places) {
@@ -190,10 +191,9 @@ void addPlaces(const ExactScene& scene, std::span<const ElementRange> ranges, Fa
 
 }  // namespace
 
-RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress) {
-  RowSample sample = samplePairs(scene, scene.tasks.size(), kSampleSteps, progress);
+void sampleRows(const ExactScene& scene, double tolerance, RowSample& sample, Progress& progress) {
+  samplePairs(scene, scene.tasks.size(), kSampleSteps, sample, progress);
   foreseeCost(scene, tolerance, sample);
-  return sample;
 }
 
 void foreseeCost(const ExactScene& scene, double tolerance, RowSample& sample) {
@@ -206,8 +206,8 @@ void foreseeCost(const ExactScene& scene, double tolerance, RowSample& sample) {
   }
 }
 
-RowSample samplePairs(const ExactScene& scene, std::size_t tasks, std::size_t steps,
-                      Progress& progress) {
+void samplePairs(const ExactScene& scene, std::size_t tasks, std::size_t steps, RowSample& sample,
+                 Progress& progress) {
   // Pairs of two walls, and of a wall and a small facet, are classes of their own: few of the rows,
   // and much of the work.
   const std::array<std::vector<ElementRange>, 2> ranges = {
@@ -219,19 +219,19 @@ RowSample samplePairs(const ExactScene& scene, std::size_t tasks, std::size_t st
       addPlaces(scene, rows, columns, steps / (2 * std::max<std::size_t>(row_classes, 1)), places);
     }
   }
-  RowSample sample;
   sample.places.resize(places.size());
   progress.begin("planning", places.size());
   parallelFor(places.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
-    sample.places[k] = lookAt(scene, k, places[k]);
+    if (sample.places[k].weight != places[k].weight) {
+      sample.places[k] = lookAt(scene, k, places[k]);
+    }
     progress.advance();
   });
   progress.check();
   progress.end();
   const double rows = tasks > 0 ? double(scene.tasks[tasks - 1].back().end) : 0.0;
   sumUp(tasks > 0 ? rows / double(tasks) : 0, sample);
-  return sample;
 }
 
 }  // namespace radiosity

@@ -65,13 +65,13 @@ inline constexpr std::size_t kSampleSteps = 96;
 /// Some rows in up to `steps` places, of large facets and of small ones, against later facets
 /// of many elements or of few: all of these, or every n-th if there are very many. The work has a
 /// bound, in tests and pairs and not by the clock, so that the counts come out the same in every
-/// run. Of the rows of the first tasks; `cost` is left to foreseeCost(). Steps `progress`; calls
-/// its check().
-RowSample samplePairs(const ExactScene& scene, std::size_t tasks, std::size_t steps,
-                      Progress& progress);
+/// run. Of the rows of the first tasks; `cost` is left to foreseeCost(). Goes on with the places
+/// that an equal call looked at before it was cancelled. Steps `progress`; calls its check().
+void samplePairs(const ExactScene& scene, std::size_t tasks, std::size_t steps, RowSample& sample,
+                 Progress& progress);
 /// Foresees what the sampled pairs cost to this tolerance.
 void foreseeCost(const ExactScene& scene, double tolerance, RowSample& sample);
 /// Both, of all rows.
-RowSample sampleRows(const ExactScene& scene, double tolerance, Progress& progress);
+void sampleRows(const ExactScene& scene, double tolerance, RowSample& sample, Progress& progress);
 
 }  // namespace radiosity

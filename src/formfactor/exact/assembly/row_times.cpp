@@ -12,14 +12,13 @@ namespace radiosity {
 namespace {
 
 /// Pairs are clipped to time their work, in up to kRounds rounds, until kClipShare of all foreseen
-/// work is done, but for no less than kLeastClipSeconds, or until kMuchOfAll is done, and no more
-/// than kMostClipSeconds. Few pairs, near to each other, may carry half of the time. Many short
-/// batches meet them.
+/// work is done, but for no less than the seconds given, or until kMuchOfAll is done, and no more
+/// than kMostTimes the seconds. Few pairs, near to each other, may carry half of the time. Many
+/// short batches meet them.
 constexpr std::size_t kRounds = 16;
 constexpr double kClipShare = 0.02;
 constexpr double kMuchOfAll = 0.15;
-constexpr double kLeastClipSeconds = 0.25;
-constexpr double kMostClipSeconds = 0.8;
+constexpr double kMostTimes = 3;
 /// A round clips about kPairsARound pairs, shared out by foreseen work, none from places and
 /// classes with less than kLeastShare of it; a batch has at most kBatchWork, about two
 /// milliseconds. Pairs are dear in small batches, up to ten times in those of single pairs.
@@ -104,11 +103,12 @@ double foreseenWork(const SampledPlace& place, const SampledPairs& of_class) {
 
 class ClipRounds {
  public:
-  ClipRounds(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
+  ClipRounds(const ExactScene& scene, const ExactKernels& kernels, double tolerance, double seconds,
              const RowSample& sample, std::vector<PlaceTime>& times, Progress& progress)
       : scene_(scene),
         kernels_(kernels),
         tolerance_(tolerance),
+        seconds_(seconds),
         sample_(sample),
         times_(times),
         progress_(progress) {
@@ -133,8 +133,8 @@ class ClipRounds {
  private:
   bool isOver() const {
     const double taken = taken_.load();
-    const double enough = taken >= kLeastClipSeconds ? kClipShare : kMuchOfAll;
-    return progress_.cancelled() || taken >= kMostClipSeconds || done_.load() >= enough * all_;
+    const double enough = taken >= seconds_ ? kClipShare : kMuchOfAll;
+    return progress_.cancelled() || taken >= kMostTimes * seconds_ || done_.load() >= enough * all_;
   }
 
   void clipSome(const SampledPlace& place, const SampledPairs& of_class, std::size_t which,
@@ -154,6 +154,7 @@ class ClipRounds {
   const ExactScene& scene_;
   const ExactKernels& kernels_;
   double tolerance_;
+  double seconds_;
   const RowSample& sample_;
   std::vector<PlaceTime>& times_;
   Progress& progress_;
@@ -194,7 +195,7 @@ double occludedSeconds(const RowSample& sample, const std::vector<PlaceTime>& ti
 }  // namespace
 
 RowTimes timeRows(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
-                  const RowSample& sample, Progress& progress) {
+                  double clip_seconds, const RowSample& sample, Progress& progress) {
   std::vector<PlaceTime> times(sample.places.size());
   parallelFor(times.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
@@ -202,7 +203,7 @@ RowTimes timeRows(const ExactScene& scene, const ExactKernels& kernels, double t
     times[k].unoccluded = unoccludedSeconds(kernels.unoccluded, sample.places[k]);
     times[k].taken = watches.elapsed();
   });
-  ClipRounds(scene, kernels, tolerance, sample, times, progress).run();
+  ClipRounds(scene, kernels, tolerance, clip_seconds, sample, times, progress).run();
   progress.check();
   RowTimes sum;
   BothClocks taken;

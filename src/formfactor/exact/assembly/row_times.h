@@ -14,10 +14,10 @@ struct RowTimes {
   double busy = 1;
 };
 
-/// Evaluates unoccluded blocks and clips pairs of the sample for some tenths of a second of
-/// processors' time. (A single pair may take longer than that where the tolerance is 1e-6 and
-/// bodies are round.) Calls check() of `progress`.
+/// Evaluates unoccluded blocks and clips pairs of the sample, these for `clip_seconds` of
+/// processors' time, or a few times that where there are very many. (A single pair may take longer
+/// where the tolerance is 1e-6 and bodies are round.) Calls check() of `progress`.
 RowTimes timeRows(const ExactScene& scene, const ExactKernels& kernels, double tolerance,
-                  const RowSample& sample, Progress& progress);
+                  double clip_seconds, const RowSample& sample, Progress& progress);
 
 }  // namespace radiosity

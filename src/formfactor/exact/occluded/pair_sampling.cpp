@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "base/parallel.h"
 #include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/occluded_pairs.h"
 
@@ -71,15 +70,8 @@ Occluder::Plane middleOfThin(const Occluder& body) {
 EdgeDistances::EdgeDistances(const ElementSet& elements, const OccluderSet& occluders, bool few)
     : elements_(elements), occluders_(occluders) {
   for (const Occluder& body : occluders.occluders) thin_.push_back(middleOfThin(body));
-  const std::size_t count = elements.size();
-  if (few || occluders.occluders.size() * count > kMostDistances) return;
-  table_.resize(occluders.occluders.size() * count);
-  parallelFor(occluders.occluders.size(), 1, [&](std::size_t o) {
-    float* const distances = table_.data() + o * count;
-    for (std::size_t e = 0; e < count; ++e) {
-      distances[e] = float(edgeDistance2(occluders.occluders[o], elements.centroid[e]));
-    }
-  });
+  const std::size_t count = elements.size() * occluders.occluders.size();
+  if (!few && count <= kMostDistances) table_ = std::vector<std::atomic<float>>(count);
 }
 
 bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
@@ -93,8 +85,18 @@ bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
 
 double EdgeDistances::squared(Index element, Index occluder) const {
   // Rounded with and without a table, so that the choice does not depend on its size.
-  if (!table_.empty()) return table_[occluder * elements_.size() + element];
-  return float(edgeDistance2(occluders_.occluders[occluder], elements_.centroid[element]));
+  const auto compute = [&] {
+    return float(edgeDistance2(occluders_.occluders[occluder], elements_.centroid[element]));
+  };
+  if (table_.empty()) return compute();
+  // Threads that meet here store the same value.
+  std::atomic<float>& known = table_[occluder * elements_.size() + element];
+  float distance = known.load(std::memory_order_relaxed);
+  if (distance == 0) {
+    distance = compute();
+    known.store(distance, std::memory_order_relaxed);
+  }
+  return distance;
 }
 
 PairPreparation::PairPreparation(const ElementSet& elements, const OccluderSet& occluders,

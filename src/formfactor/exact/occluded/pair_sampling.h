@@ -2,6 +2,7 @@
 // the occluders kept that reach between their planes.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -37,8 +38,8 @@ enum class SampledEnd {
   restless,  ///< the other one
 };
 
-/// Distances of all elements from all occluders' edges, unless there are too many, and from the
-/// planes of thin occluders.
+/// Distances of elements from occluders' edges, each kept once it is known, unless there are too
+/// many, and from the planes of thin occluders.
 class EdgeDistances {
  public:
   /// `few`: only some pairs are asked for, and a table would not pay.
@@ -53,7 +54,8 @@ class EdgeDistances {
  private:
   const ElementSet& elements_;
   const OccluderSet& occluders_;
-  std::vector<float> table_;           ///< by occluder, then element; empty: computed on demand
+  /// By occluder, then element; 0 where not known. Empty: computed each time.
+  mutable std::vector<std::atomic<float>> table_;
   std::vector<Occluder::Plane> thin_;  ///< the middle of thin occluders; of others the normal is 0
 };
 
