@@ -6,6 +6,7 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace radiosity {
@@ -31,6 +32,8 @@ class ByteWriter {
     bytes_.push_back(std::byte(value));
   }
   std::span<const std::byte> bytes() const { return bytes_; }
+  /// The bytes, which leaves none.
+  std::vector<std::byte> take() { return std::exchange(bytes_, {}); }
 
  private:
   void append(const void* data, std::size_t size) {

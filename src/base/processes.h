@@ -51,6 +51,10 @@ class Processes {
   virtual void broadcast(std::span<std::byte> bytes, const WhileWaiting& waiting = {}) = 0;
   /// Process 0 gets the sums over all processes; the others keep what they have.
   virtual void sum(std::span<double> values, const WhileWaiting& waiting = {}) = 0;
+  /// Each process sends messages[p] to process p, and gets what process p sent to it as element p.
+  /// Its own message is dropped.
+  virtual std::vector<std::vector<std::byte>> exchange(std::vector<std::vector<std::byte>> messages,
+                                                       const WhileWaiting& waiting = {}) = 0;
   /// Solves with PETSc's KSP. `solution`: rows * bands, in process 0; empty in the others. Errors:
   /// RunError if PETSc fails.
   virtual KrylovOutcome solve(const KrylovProblem& problem, std::span<double> solution) = 0;

@@ -132,6 +132,7 @@ int runOther(int argc, char** argv, Processes& processes) {
 int main(int argc, char** argv) {
   using namespace radiosity;
   using namespace radiosity::cli;
+  ignoreSignalsOfWriting();
   if (!startedByMpi()) return runProgram(argc, argv, nullptr);
   try {
     Processes& processes = joinProcesses();

@@ -92,6 +92,14 @@ std::string interruptedText() {
          (committedFiles() == 0 ? "; nothing was written" : "; what was written is whole");
 }
 
+void ignoreSignalsOfWriting() {
+  struct sigaction action {};
+  action.sa_handler = SIG_IGN;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGPIPE, &action, nullptr);
+  sigaction(SIGXFSZ, &action, nullptr);
+}
+
 SignalGuard::SignalGuard(ConsoleProgress& progress, const TimeLimit& limit)
     : progress_(progress), limit_(limit) {
   sem_init(&wake, 0, 0);
@@ -103,9 +111,6 @@ SignalGuard::SignalGuard(ConsoleProgress& progress, const TimeLimit& limit)
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  action.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &action, nullptr);
-  sigaction(SIGXFSZ, &action, nullptr);  // a write over the file size limit fails and is reported
 }
 
 SignalGuard::~SignalGuard() {

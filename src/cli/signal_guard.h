@@ -14,7 +14,6 @@ namespace radiosity::cli {
 /// cleanly at its next step. If no step ends in time, a separate thread removes half-written files,
 /// prints a message, and ends the process, so that the user always gets an answer within half a
 /// second. A third signal ends the process at once. The same thread also draws the progress.
-/// SIGPIPE is ignored: a closed pipe loses lines but does not end the run.
 class SignalGuard {
  public:
   explicit SignalGuard(ConsoleProgress& progress, const TimeLimit& limit = TimeLimit(kNoTimeLimit));
@@ -30,6 +29,10 @@ class SignalGuard {
   std::atomic<bool> over_{false};
   std::thread watcher_;
 };
+
+/// From now on a closed pipe loses lines but does not end the run, and a write over the limit of
+/// file sizes fails and is reported.
+void ignoreSignalsOfWriting();
 
 /// The message of a run that was interrupted or ran out of time: it names the stages on disk, if
 /// there are any.

@@ -125,6 +125,30 @@ void MpiProcesses::sum(std::span<double> values, const WhileWaiting& waiting) {
   });
 }
 
+std::vector<std::vector<std::byte>> MpiProcesses::exchange(
+    std::vector<std::vector<std::byte>> messages, const WhileWaiting& waiting) {
+  std::vector<unsigned long long> lengths;
+  lengths.reserve(messages.size());
+  for (const std::vector<std::byte>& message : messages) lengths.push_back(message.size());
+  std::vector<MPI_Request> sent;
+  for (int p = 0; p < size_; ++p) {
+    if (p == rank_) continue;
+    const std::vector<std::byte>& message = messages[std::size_t(p)];
+    MPI_Isend(&lengths[std::size_t(p)], 1, MPI_UNSIGNED_LONG_LONG, p, kLength, MPI_COMM_WORLD,
+              &sent.emplace_back());
+    inParts(message.size(), kMostBytes, [&](std::size_t at, int count) {
+      MPI_Isend(message.data() + at, count, MPI_BYTE, p, kBytes, MPI_COMM_WORLD,
+                &sent.emplace_back());
+    });
+  }
+  std::vector<std::vector<std::byte>> received(messages.size());
+  for (int p = 0; p < size_; ++p) {
+    if (p != rank_) received[std::size_t(p)] = receive(p, waiting).bytes;
+  }
+  for (MPI_Request& request : sent) wait(request, waiting);
+  return received;
+}
+
 KrylovOutcome MpiProcesses::solve(const KrylovProblem& problem, std::span<double> solution) {
   return petscSolve(problem, solution);
 }

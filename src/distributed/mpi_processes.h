@@ -19,6 +19,8 @@ class MpiProcesses final : public Processes {
   Message receive(int from, const WhileWaiting& waiting) override;
   void broadcast(std::span<std::byte> bytes, const WhileWaiting& waiting) override;
   void sum(std::span<double> values, const WhileWaiting& waiting) override;
+  std::vector<std::vector<std::byte>> exchange(std::vector<std::vector<std::byte>> messages,
+                                               const WhileWaiting& waiting) override;
   KrylovOutcome solve(const KrylovProblem& problem, std::span<double> solution) override;
   void finish() override;
   [[noreturn]] void abort(int code) override;

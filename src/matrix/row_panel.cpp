@@ -19,13 +19,13 @@ constexpr std::size_t kSparse = 16;
 /// Blocks of a panel of short rows.
 constexpr std::size_t kSortedBlocks = 32;
 
-/// Some rows of F, gathered from the triangle. Row i has the values of row position(i) of the
-/// triangle, and from every earlier row of the triangle the one value at its own position.
-class GatheredRows {
+/// Gathers the rows of a panel from the triangle. Row i has the values of row position(i) of the
+/// triangle, and from every earlier row of the triangle the one value at its own position. Rows
+/// that are neighbours by position are gathered together: they read neighbouring values.
+class Gathering {
  public:
-  /// Rows first to last - 1.
-  GatheredRows(const ExchangeMatrix& matrix, std::span<const Index> position, std::size_t first,
-               std::size_t last)
+  Gathering(const ExchangeMatrix& matrix, std::span<const Index> position, std::size_t first,
+            std::size_t last)
       : matrix_(matrix) {
     rows_.reserve(last - first);
     for (std::size_t i = first; i < last; ++i) rows_.push_back({position[i], Index(i - first)});
@@ -33,61 +33,16 @@ class GatheredRows {
               [](const Row& a, const Row& b) { return a.position < b.position; });
   }
 
-  /// Calls visit(row, counted from the first one; column; value) for every entry.
-  template <class Visit>
-  void forEntries(const Visit& visit) const {
-    const std::span<const Index> order = matrix_.order();
-    std::size_t next = 0;  // the first row that is not before k
-    for (std::size_t k = 0; next < rows_.size(); ++k) {
-      const RunRow& stored = matrix_.upperRuns(k);
-      if (rows_[next].position == k) {
-        const Index row = rows_[next++].row;
-        if (matrix_.diagonal(k) != 0) visit(row, order[k], matrix_.diagonal(k));
-        forRuns(stored, [&](std::size_t offset, const auto* values, std::size_t count) {
-          const Index* later = &order[k] + 1 + offset;
-          for (std::size_t m = 0; m < count; ++m) {
-            if (values[m] != 0) visit(row, later[m], double(values[m]));
-          }
-        });
-      }
-      if (stored.runs.empty()) continue;
-      const double area = matrix_.area()[order[k]];
-      RunReader reader(stored);
-      for (std::size_t m = next; m < rows_.size(); ++m) {
-        const Index position = rows_[m].position;
-        const double value = reader.at(position - k - 1);
-        if (value != 0)
-          visit(rows_[m].row, order[k], value * area / matrix_.area()[order[position]]);
-      }
-    }
-  }
-
- private:
-  struct Row {
-    Index position;
-    Index row;
-  };
-  const ExchangeMatrix& matrix_;
-  std::vector<Row> rows_;  // by position
-};
-
-/// Gathers the rows of a panel.
-class Gathering {
- public:
-  Gathering(const ExchangeMatrix& matrix, std::span<const Index> position, std::size_t first,
-            std::size_t last)
-      : matrix_(matrix), position_(position), first_(first), last_(last) {}
-
   std::vector<Index> countEntries() const {
-    std::vector<Index> entries(last_ - first_, 0);
-    rows(first_, last_).forEntries([&](Index row, Index, double) { ++entries[row]; });
+    std::vector<Index> entries(rows_.size(), 0);
+    forEntries(rows_, [&](std::size_t k, Index, double) { ++entries[rows_[k].row]; });
     return entries;
   }
 
   /// Writes the rows in compressed form, sorted, to the places that `starts` gives them.
   void run(std::span<const std::size_t> starts, std::vector<Index>& columns,
            std::vector<double>& values) const {
-    const std::size_t count = last_ - first_;
+    const std::size_t count = rows_.size();
     if (count == 0) return;
     const bool laid_out = starts.back() * kSparse >= count * matrix_.size();
     const std::size_t size =
@@ -97,34 +52,62 @@ class Gathering {
     parallelFor((count + size - 1) / size, 1, [&](std::size_t block) {
       const std::size_t begin = block * size;
       const std::size_t end = std::min(begin + size, count);
-      const auto block_starts = starts.subspan(begin, end - begin + 1);
+      const auto rows = std::span(rows_).subspan(begin, end - begin);
       if (laid_out) {
-        layOut(first_ + begin, block_starts, layouts.local(), columns, values);
+        layOut(rows, starts, layouts.local(), columns, values);
       } else {
-        sort(first_ + begin, block_starts, sorters.local(), columns, values);
+        sort(rows, starts, sorters.local(), columns, values);
       }
     });
   }
 
  private:
-  GatheredRows rows(std::size_t first, std::size_t last) const {
-    return {matrix_, position_, first, last};
+  struct Row {
+    Index position;
+    Index row;  ///< in the panel
+  };
+
+  /// Calls visit(k, column, value) for every entry of rows[k], which are in order of position.
+  template <class Visit>
+  void forEntries(std::span<const Row> rows, const Visit& visit) const {
+    const std::span<const Index> order = matrix_.order();
+    std::size_t next = 0;  // the first row that is not before k
+    for (std::size_t k = 0; next < rows.size(); ++k) {
+      const RunRow& stored = matrix_.upperRuns(k);
+      if (rows[next].position == k) {
+        const std::size_t itself = next++;
+        if (matrix_.diagonal(k) != 0) visit(itself, order[k], matrix_.diagonal(k));
+        forRuns(stored, [&](std::size_t offset, const auto* values, std::size_t count) {
+          const Index* later = &order[k] + 1 + offset;
+          for (std::size_t m = 0; m < count; ++m) {
+            if (values[m] != 0) visit(itself, later[m], double(values[m]));
+          }
+        });
+      }
+      if (stored.runs.empty()) continue;
+      const double area = matrix_.area()[order[k]];
+      RunReader reader(stored);
+      for (std::size_t m = next; m < rows.size(); ++m) {
+        const Index position = rows[m].position;
+        const double value = reader.at(position - k - 1);
+        if (value != 0) visit(m, order[k], value * area / matrix_.area()[order[position]]);
+      }
+    }
   }
 
-  /// Rows from `first` on, by writing them with all their zeros. `layout` is at least as large as
-  /// they were before, and holds kAbsent everywhere.
-  void layOut(std::size_t first, std::span<const std::size_t> starts, std::vector<double>& layout,
-              std::vector<Index>& columns, std::vector<double>& values) const {
+  /// Writes rows with all their zeros first. `layout` is at least as large as they were before, and
+  /// holds kAbsent everywhere.
+  void layOut(std::span<const Row> rows, std::span<const std::size_t> starts,
+              std::vector<double>& layout, std::vector<Index>& columns,
+              std::vector<double>& values) const {
     constexpr double kAbsent = -1;
     const std::size_t n = matrix_.size();
-    const std::size_t count = starts.size() - 1;
-    if (layout.size() < count * n) layout.resize(count * n, kAbsent);
-    rows(first, first + count).forEntries([&](Index row, Index column, double value) {
-      layout[row * n + column] = value;
-    });
-    for (std::size_t row = 0; row < count; ++row) {
-      const auto line = std::span(layout).subspan(row * n, n);
-      std::size_t at = starts[row];
+    if (layout.size() < rows.size() * n) layout.resize(rows.size() * n, kAbsent);
+    forEntries(rows,
+               [&](std::size_t k, Index column, double value) { layout[k * n + column] = value; });
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const auto line = std::span(layout).subspan(k * n, n);
+      std::size_t at = starts[rows[k].row];
       for (std::size_t column = 0; column < n; ++column) {
         if (line[column] == kAbsent) continue;
         columns[at] = Index(column);
@@ -134,24 +117,24 @@ class Gathering {
     }
   }
 
-  void sort(std::size_t first, std::span<const std::size_t> starts, EntrySorter& sorter,
+  void sort(std::span<const Row> rows, std::span<const std::size_t> starts, EntrySorter& sorter,
             std::vector<Index>& columns, std::vector<double>& values) const {
-    std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
-    rows(first, first + next.size()).forEntries([&](Index row, Index column, double value) {
-      columns[next[row]] = column;
-      values[next[row]++] = value;
+    std::vector<std::size_t> next;
+    next.reserve(rows.size());
+    for (const Row& row : rows) next.push_back(starts[row.row]);
+    forEntries(rows, [&](std::size_t k, Index column, double value) {
+      columns[next[k]] = column;
+      values[next[k]++] = value;
     });
-    for (std::size_t row = 0; row < next.size(); ++row) {
-      const std::size_t count = starts[row + 1] - starts[row];
-      sorter.sort(std::span(columns).subspan(starts[row], count),
-                  std::span(values).subspan(starts[row], count), matrix_.size());
+    for (const Row& row : rows) {
+      const std::size_t count = starts[row.row + 1] - starts[row.row];
+      sorter.sort(std::span(columns).subspan(starts[row.row], count),
+                  std::span(values).subspan(starts[row.row], count), matrix_.size());
     }
   }
 
   const ExchangeMatrix& matrix_;
-  std::span<const Index> position_;
-  std::size_t first_;
-  std::size_t last_;
+  std::vector<Row> rows_;  // by position
 };
 
 }  // namespace

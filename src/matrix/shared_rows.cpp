@@ -1,18 +1,17 @@
 #include "matrix/shared_rows.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/byte_stream.h"
+#include "base/made.h"
 #include "base/parallel.h"
 #include "base/union_find.h"
-#include "matrix/make_room.h"
 #include "matrix/ordered_sums.h"
 #include "matrix/own_rows.h"
+#include "matrix/row_parts.h"
 #include "matrix/run_row.h"
-#include "matrix/sort_entries.h"
 
 namespace radiosity {
 
@@ -25,6 +24,9 @@ enum class Request : std::uint32_t {
   row_sums,
   sizes,
   panel,
+  deal,
+  deal_round,
+  deal_end,
   columns,
   joined,
   solve,
@@ -63,26 +65,6 @@ RowOwners findOwners(Processes& processes, const ExchangeMatrix& own, const Whil
   return owners;
 }
 
-struct PanelRows {
-  std::vector<Index> counts;  ///< entries of each row
-  std::vector<Index> columns;
-  std::vector<double> values;
-};
-
-PanelRows panelOf(const ExchangeMatrix& own, std::size_t first, std::size_t last) {
-  PanelRows rows;
-  const RowPanel panel(own, first, last);
-  for (std::size_t i = first; i < last; ++i) {
-    const std::size_t before = rows.columns.size();
-    panel.forRow(i, [&](Index column, double value) {
-      rows.columns.push_back(column);
-      rows.values.push_back(value);
-    });
-    rows.counts.push_back(Index(rows.columns.size() - before));
-  }
-  return rows;
-}
-
 /// `dense`: of zeros.
 void fillColumns(const ExchangeMatrix& own, std::size_t first, std::size_t last,
                  std::span<double> dense) {
@@ -90,55 +72,6 @@ void fillColumns(const ExchangeMatrix& own, std::size_t first, std::size_t last,
   const RowPanel rows(own, 0, n);
   parallelFor(n, kRowGrain, [&](std::size_t i) {
     rows.forRow(i, first, last, [&](Index j, double value) { dense[(j - first) * n + i] = value; });
-  });
-}
-
-void send(Processes& processes, const PanelRows& rows) {
-  ByteWriter bytes;
-  bytes.putArray(std::span(rows.counts));
-  bytes.putArray(std::span(rows.columns));
-  bytes.putArray(std::span(rows.values));
-  processes.send(0, bytes.bytes());
-}
-
-PanelRows receive(Processes& processes, int from, const WhileWaiting& waiting) {
-  const Processes::Message message = processes.receive(from, waiting);
-  ByteReader bytes(message.bytes);
-  PanelRows rows;
-  rows.counts = bytes.getArray<Index>();
-  rows.columns = bytes.getArray<Index>();
-  rows.values = bytes.getArray<double>();
-  return rows;
-}
-
-/// Puts the entries that the parts hold of each of `rows` rows one after the other, sorted.
-void merge(std::span<const PanelRows> parts, std::size_t rows, std::size_t n,
-           std::vector<std::size_t>& starts, std::vector<Index>& columns,
-           std::vector<double>& values) {
-  starts.assign(rows + 1, 0);
-  std::vector<std::size_t> from(parts.size() * rows);  // the first entry of a row in each part
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    std::size_t before = 0;
-    for (std::size_t row = 0; row < rows; ++row) {
-      from[p * rows + row] = std::exchange(before, before + parts[p].counts[row]);
-      starts[row + 1] += parts[p].counts[row];
-    }
-  }
-  for (std::size_t row = 0; row < rows; ++row) starts[row + 1] += starts[row];
-  makeRoom(columns, starts.back());
-  makeRoom(values, starts.back());
-  tbb::enumerable_thread_specific<EntrySorter> sorters;
-  parallelFor(rows, kRowGrain, [&](std::size_t row) {
-    std::size_t at = starts[row];
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      const std::size_t count = parts[p].counts[row];
-      std::copy_n(&parts[p].columns[from[p * rows + row]], count, &columns[at]);
-      std::copy_n(&parts[p].values[from[p * rows + row]], count, &values[at]);
-      at += count;
-    }
-    const std::size_t count = at - starts[row];
-    sorters.local().sort(std::span(columns).subspan(starts[row], count),
-                         std::span(values).subspan(starts[row], count), n);
   });
 }
 
@@ -251,9 +184,37 @@ void SharedRows::panel(std::size_t first, std::size_t last, std::vector<std::siz
   const SharedStep step(processes_);
   Order order{.request = Request::panel, .first = first, .last = last};
   processes_.broadcastValue(order, waiting_);
-  std::vector<PanelRows> parts{panelOf(own_, first, last)};
-  for (int p = 1; p < processes_.size(); ++p) parts.push_back(receive(processes_, p, waiting_));
-  merge(parts, last - first, own_.size(), starts, columns, values);
+  std::vector<RowsPart> parts{partOf(own_, {first, last})};
+  for (int p = 1; p < processes_.size(); ++p) {
+    parts.push_back(partFrom(processes_.receive(p, waiting_).bytes));
+  }
+  mergeParts(parts, own_.size(), starts, columns, values);
+}
+
+void SharedRows::deal(DealtBlocks blocks, const MakeTaker& make_taker, Progress& progress) const {
+  std::optional<Dealing> dealing;
+  std::size_t rounds = 0;
+  {
+    const SharedStep step(processes_);
+    Order order{.request = Request::deal};
+    processes_.broadcastValue(order, waiting_);
+    blocks.send(processes_, waiting_);
+    dealing.emplace(processes_, own_, std::move(blocks), make_taker);
+    rounds = dealing->rounds();
+  }
+  for (std::size_t round = 0; round <= rounds; ++round) {
+    progress.check();
+    std::string problem;
+    {
+      const SharedStep step(processes_);
+      Order order{.request = round < rounds ? Request::deal_round : Request::deal_end,
+                  .first = round};
+      processes_.broadcastValue(order, waiting_);
+      problem = round < rounds ? dealing->round(round, waiting_) : dealing->end(waiting_);
+    }
+    if (!problem.empty()) throw RunError(problem);
+    if (round < rounds) progress.advance(dealing->rowsInRound(round));
+  }
 }
 
 void SharedRows::columns(std::size_t first, std::size_t last, std::span<double> dense) const {
@@ -289,8 +250,9 @@ KrylovOutcome SharedRows::solve(const KrylovProblem& problem, std::span<double> 
   return processes_.solve(shared.problem(), solution);
 }
 
-void serveRows(Processes& processes, const ExchangeMatrix& own) {
+void serveRows(Processes& processes, const ExchangeMatrix& own, const MakeTaker& make_taker) {
   const RowOwners owners = findOwners(processes, own, {});
+  std::optional<Dealing> dealing;
   std::vector<double> values;
   for (Order order;;) {
     processes.broadcastValue(order);
@@ -311,7 +273,17 @@ void serveRows(Processes& processes, const ExchangeMatrix& own) {
         processes.sum(values);
         break;
       case Request::panel:
-        send(processes, panelOf(own, order.first, order.last));
+        processes.send(0, bytesOf(partOf(own, {order.first, order.last})));
+        break;
+      case Request::deal:
+        dealing.emplace(processes, own, DealtBlocks::receive(processes), make_taker);
+        break;
+      case Request::deal_round:
+        made(dealing).round(order.first, {});
+        break;
+      case Request::deal_end:
+        made(dealing).end({});
+        dealing.reset();
         break;
       case Request::columns:
         values.assign((order.last - order.first) * own.size(), 0.0);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/processes.h"
+#include "matrix/dealt_blocks.h"
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
@@ -50,6 +51,10 @@ class SharedRows {
   /// Rows first to last - 1, compressed and sorted.
   void panel(std::size_t first, std::size_t last, std::vector<std::size_t>& starts,
              std::vector<Index>& columns, std::vector<double>& values) const;
+  /// Gives each process its blocks of rows, whole, round by round. `make_taker`: as in serveRows().
+  /// Steps `progress` by rows; calls its check() between rounds. Errors: RunError with the message
+  /// of a taker.
+  void deal(DealtBlocks blocks, const MakeTaker& make_taker, Progress& progress) const;
   /// Row form: sets dense[(j - first) * N + i] = F_ij for columns j from first to last - 1. `dense`
   /// must hold (last - first) * N zeros.
   void columns(std::size_t first, std::size_t last, std::span<double> dense) const;
@@ -65,7 +70,8 @@ class SharedRows {
   RowOwners owners_;
 };
 
-/// The loop of the other processes: serves process 0 until its matrix is destroyed.
-void serveRows(Processes& processes, const ExchangeMatrix& own);
+/// The loop of the other processes: serves process 0 until its matrix is destroyed. `make_taker`:
+/// what takes the blocks of SharedRows::deal().
+void serveRows(Processes& processes, const ExchangeMatrix& own, const MakeTaker& make_taker);
 
 }  // namespace radiosity

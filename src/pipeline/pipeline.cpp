@@ -236,13 +236,13 @@ ExchangeMatrix Pipeline::shareRows(Processes& processes) {
 
 void Pipeline::serve(Processes& processes, SharedTask task) {
   if (task == SharedTask::form_factors) {
-    serveRows(processes, shareRows(processes));
+    serveRows(processes, shareRows(processes), makeMatrixBlockWriter);
     return;
   }
   std::vector<char> path;
   processes.broadcastArray(path);
-  serveRows(processes, readMatrixPart({path.begin(), path.end()}, {std::size_t(processes.rank()),
-                                                                   std::size_t(processes.size())}));
+  const MatrixPart part{std::size_t(processes.rank()), std::size_t(processes.size())};
+  serveRows(processes, readMatrixPart({path.begin(), path.end()}, part), makeMatrixBlockWriter);
 }
 
 void Pipeline::loadMatrix() {

@@ -157,11 +157,15 @@ struct DiskFile {
     return last > address ? std::size_t(last - address) : 0;
   }
 
-  static herr_t write(H5FD_t* base, H5FD_mem_t /*type*/, hid_t /*transfer*/, haddr_t address,
+  static herr_t write(H5FD_t* base, H5FD_mem_t type, hid_t /*transfer*/, haddr_t address,
                       std::size_t size, const void* buffer) {
     DiskFile* file = of(base);
     const auto* bytes = static_cast<const char*>(buffer);
     file->end = std::max(file->end, address + size);
+    if (file->disk->reserved_ != nullptr && type == H5FD_MEM_DRAW) {
+      file->disk->reserved_->push_back(address);
+      return 0;
+    }
     if (file->disk->mode_ == Disk::Mode::extend) {
       const std::size_t kept = file->keepInMemory(address, size, bytes);
       bytes += kept;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "results/h5.h"
 
@@ -35,6 +36,19 @@ class Disk {
   bool switched() const { return switched_; }
   /// The old end of an extended file.
   std::uint64_t oldEnd() const { return old_end_; }
+  /// While it lives, HDF5's writes of values are dropped, and their places are added to `places`.
+  class Reserving {
+   public:
+    Reserving(Disk& disk, std::vector<std::uint64_t>& places) : disk_(disk) {
+      disk_.reserved_ = &places;
+    }
+    ~Reserving() { disk_.reserved_ = nullptr; }
+    Reserving(const Reserving&) = delete;
+    Reserving& operator=(const Reserving&) = delete;
+
+   private:
+    Disk& disk_;
+  };
 
  private:
   friend struct DiskFile;
@@ -44,6 +58,7 @@ class Disk {
   bool may_switch_ = false;
   bool switched_ = false;
   std::uint64_t old_end_ = 0;
+  std::vector<std::uint64_t>* reserved_ = nullptr;
 };
 
 }  // namespace radiosity::h5

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 namespace radiosity::h5 {
 
@@ -66,7 +67,8 @@ Handle accessTo(Disk& disk) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path, std::string shown) : shown_(std::move(shown)) {
+OutputFile::OutputFile(const std::string& path, std::string shown)
+    : path_(path), shown_(std::move(shown)) {
   const Handle access = accessTo(disk_);
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation.get(), false);  // of the root group
@@ -92,7 +94,13 @@ bool OutputFile::closeExtended() {
   return closed && disk_.switched();
 }
 
+const ChunkFile& OutputFile::chunks() {
+  if (!chunks_) chunks_.emplace(path_, shown_);
+  return *chunks_;
+}
+
 void OutputFile::close() {
+  if (chunks_) chunks_->close();
   if (!file_.close()) fail("/");
   check("/");
 }
@@ -169,35 +177,26 @@ void OutputGroup::dataset(const std::string& name, const Shape& shape, const voi
   file_->check(pathOf(name));
 }
 
-void OutputGroup::writeChunk(const std::string& name, const Handle& dataset, std::size_t first,
-                             std::span<const unsigned char> stored) {
+ReservedColumn OutputGroup::reserve(const std::string& name, Number number, std::size_t count) {
+  const Shape shape{number, count, 0};
+  if (shape.bytes() <= kCompactBytes) {
+    throw std::logic_error("OutputGroup::reserve(): a compact dataset has no chunks");
+  }
+  ReservedColumn column{pathOf(name), chunkRows(shape), {}};
+  Handle id = create(name, shape, "");
+  const std::vector<unsigned char> bytes(column.chunk * sizeOf(number));
+  const std::vector<unsigned char> stored = storedChunk(bytes);
+  const Disk::Reserving reserving(file_->disk(), column.places);
   constexpr std::uint32_t kAllFilters = 0;  // none was left out
-  const hsize_t start = first;
-  if (H5Dwrite_chunk(dataset.get(), H5P_DEFAULT, kAllFilters, &start, stored.size(),
-                     stored.data()) < 0) {
-    file_->fail(pathOf(name));
+  for (hsize_t first = 0; first < count; first += column.chunk) {
+    if (H5Dwrite_chunk(id.get(), H5P_DEFAULT, kAllFilters, &first, stored.size(), stored.data()) <
+        0) {
+      file_->fail(column.path);
+    }
   }
-  file_->check(pathOf(name));
-}
-
-std::vector<unsigned char> storedChunk(std::span<const unsigned char> data) {
-  // Words of 16 bits, the first byte being the higher one.
-  std::uint64_t sum = 0;
-  std::uint64_t sum_of_sums = 0;  // below 2^64, since there are less than 2^24 words
-  for (std::size_t k = 0; k + 1 < data.size(); k += 2) {
-    sum += std::uint64_t(data[k]) << 8 | data[k + 1];
-    sum_of_sums += sum;
-  }
-  // HDF5 adds the carries of 16 bits, which gives 65535, not 0, for multiples of it.
-  const auto folded = [](std::uint64_t value) {
-    return std::uint32_t(value == 0 ? 0 : (value - 1) % 65535 + 1);
-  };
-  const std::uint32_t checksum = folded(sum_of_sums) << 16 | folded(sum);
-  std::vector<unsigned char> stored;
-  stored.reserve(data.size() + sizeof checksum);
-  stored.assign(data.begin(), data.end());
-  for (int bit = 0; bit < 32; bit += 8) stored.push_back((unsigned char)(checksum >> bit));
-  return stored;
+  if (!id.close()) file_->fail(column.path);
+  file_->check(column.path);
+  return column;
 }
 
 std::size_t columnWidth(const std::vector<std::string>& values) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "results/h5.h"
+#include "results/h5_chunks.h"
 #include "results/h5_disk.h"
 
 namespace radiosity::h5 {
@@ -29,6 +30,9 @@ class OutputFile {
   /// The old end of an extended file.
   std::uint64_t oldEnd() const { return disk_.oldEnd(); }
   hid_t id() const { return file_.get(); }
+  Disk& disk() { return disk_; }
+  /// The same file, to write reserved chunks into.
+  const ChunkFile& chunks();
   [[noreturn]] void fail(const std::string& object) const;
   /// Throws if the disk has refused anything so far.
   void check(const std::string& object) const {
@@ -40,8 +44,10 @@ class OutputFile {
 
   Silence silence_;  // these two first: they outlive the handle
   Disk disk_;
+  std::string path_;
   std::string shown_;
   Handle file_;
+  std::optional<ChunkFile> chunks_;
 };
 
 /// A group to put attributes, datasets and groups into.
@@ -65,16 +71,16 @@ class OutputGroup {
   std::optional<std::uint64_t> number(const std::string& name) const;
   /// Whether the text `name` of the group `group` in this one is `value`.
   bool says(const std::string& group, const std::string& name, const std::string& value) const;
-  /// Creates an empty dataset of one dimension, to be filled by writeChunk().
-  Handle create(const std::string& name, const Shape& shape, const std::string& unit);
-  /// Writes the chunk of a dataset of one dimension that begins with row `first`; `stored` is that
-  /// of storedChunk().
-  void writeChunk(const std::string& name, const Handle& dataset, std::size_t first,
-                  std::span<const unsigned char> stored);
+  /// Makes a dataset of one dimension, of more than kCompactBytes, whose chunks have their places;
+  /// the caller writes them (ChunkFile).
+  ReservedColumn reserve(const std::string& name, Number number, std::size_t count);
+  /// The file, to write reserved chunks into.
+  const ChunkFile& chunks() { return file_->chunks(); }
 
  private:
   OutputGroup(OutputFile& file, Handle id, std::string path);
   std::string pathOf(const std::string& name) const { return path_ + "/" + name; }
+  Handle create(const std::string& name, const Shape& shape, const std::string& unit);
   Handle checked(hid_t id, Handle::Close close, const std::string& name) const;
   void writeText(hid_t object, const std::string& name, const std::string& value);
 
@@ -82,10 +88,6 @@ class OutputGroup {
   Handle id_;
   std::string path_;
 };
-
-/// A chunk as HDF5 stores it: the bytes and their Fletcher-32 checksum ("HDF5 File Format
-/// Specification", IV.A.2.l). `data`: an even number of bytes below 2^25.
-std::vector<unsigned char> storedChunk(std::span<const unsigned char> data);
 
 /// Takes the same calls as OutputGroup and adds up the bytes that they would write.
 class SizeCounter {

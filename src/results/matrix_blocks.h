@@ -2,6 +2,7 @@
 // indices, indptr), shape), written and read block by block.
 #pragma once
 
+#include "matrix/dealt_blocks.h"
 #include "radiosity/exchange_matrix.h"
 #include "results/h5_reader.h"
 #include "results/h5_writer.h"
@@ -13,6 +14,10 @@ namespace radiosity {
 /// the order in which it stores patches), which marks it as symmetric. Holds one chunk of each at a
 /// time, and for a symmetric matrix a panel of rows.
 void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress);
+
+/// Writes the blocks of a matrix whose rows lie in several processes, each into its place in the
+/// file that process 0 is writing. `job`: from writeMatrix() in process 0.
+std::unique_ptr<BlockTaker> makeMatrixBlockWriter(std::span<const std::byte> job);
 
 /// Counts the bytes that writeMatrix() adds to the file.
 void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix);

@@ -1,16 +1,25 @@
 // Writes the matrix.
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "base/byte_stream.h"
 #include "base/parallel.h"
+#include "matrix/shared_rows.h"
 #include "results/column_writer.h"
 #include "results/matrix_blocks.h"
 
 namespace radiosity {
 
+using h5::ChunkFile;
+using h5::ChunkRange;
 using h5::ColumnWriter;
 using h5::Number;
+using h5::ReservedColumn;
 
 namespace {
 
@@ -25,6 +34,30 @@ std::vector<std::int64_t> rowStarts(const ExchangeMatrix& matrix) {
   return indptr;
 }
 
+/// Adds rows first to last - 1 to the columns. `starts`: of these rows' entries. Calls
+/// step(rows done) between some of them.
+template <class T, class Rows, class Start, class Step>
+void addRows(const Rows& rows, std::size_t first, std::size_t last, std::span<const Start> starts,
+             ColumnWriter<std::int32_t>& indices, ColumnWriter<T>& data, const Step& step) {
+  const auto start = [&](std::size_t i) { return std::int64_t(starts[i - first]); };
+  for (std::size_t from = first; from < last;) {
+    std::size_t to = from + 1;
+    while (to < last && start(to + 1) - start(from) <= kEntriesAtOnce) ++to;
+    const auto count = std::size_t(start(to) - start(from));
+    const std::span<std::int32_t> columns = indices.extend(count);
+    const std::span<T> values = data.extend(count);
+    parallelFor(to - from, 1, [&](std::size_t k) {
+      auto at = std::size_t(start(from + k) - start(from));
+      rows.forRow(from + k, [&](Index column, double value) {
+        columns[at] = std::int32_t(column);
+        values[at++] = T(value);
+      });
+    });
+    step(to - from);
+    from = to;
+  }
+}
+
 /// Writes the entries of rows that begin at the entries `starts`.
 template <class T>
 void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix,
@@ -32,30 +65,141 @@ void writeEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix,
   const auto entries = std::size_t(starts.back());
   ColumnWriter<std::int32_t> indices(group, "indices", entries);
   ColumnWriter<T> data(group, "data", entries);
-  progress.begin("writing form factors", matrix.size());
   matrix.forPanels([&](const RowPanel& rows) {
-    for (std::size_t first = rows.first(); first < rows.last();) {
-      progress.check();
-      std::size_t last = first + 1;
-      while (last < rows.last() && starts[last + 1] - starts[first] <= kEntriesAtOnce) ++last;
-      const auto count = std::size_t(starts[last] - starts[first]);
-      const std::span<std::int32_t> columns = indices.extend(count);
-      const std::span<T> values = data.extend(count);
-      parallelFor(last - first, 1, [&](std::size_t k) {
-        auto at = std::size_t(starts[first + k] - starts[first]);
-        rows.forRow(first + k, [&](Index column, double value) {
-          columns[at] = std::int32_t(column);
-          values[at++] = T(value);
-        });
-      });
-      progress.advance(last - first);
-      first = last;
-    }
+    addRows(rows, rows.first(), rows.last(),
+            starts.subspan(rows.first(), rows.last() - rows.first() + 1), indices, data,
+            [&](std::size_t done) {
+              progress.advance(done);
+              progress.check();
+            });
   });
   progress.check();  // an interruption during the last rows
   indices.flush();
   data.flush();
-  progress.end();
+}
+
+/// The chunks that a process writes of a block of rows. The rows at its ends may be in its
+/// neighbours, too: chunks begin and end within rows.
+struct BlockChunks {
+  ChunkRange indices;
+  ChunkRange data;
+  std::size_t first_entry = 0;  ///< of the rows
+};
+
+/// What processes need to write their blocks.
+struct BlocksJob {
+  std::string file;
+  std::string shown;
+  Number number = Number::f32;  ///< of the data
+  ReservedColumn indices;
+  ReservedColumn data;
+  std::vector<BlockChunks> blocks;
+
+  std::vector<std::byte> bytes() const {
+    ByteWriter out;
+    for (const std::string* text : {&file, &shown, &indices.path, &data.path}) {
+      out.putArray(std::span<const char>(*text));
+    }
+    out.put(number);
+    for (const ReservedColumn* column : {&indices, &data}) {
+      out.put(column->chunk);
+      out.putArray(std::span(column->places));
+    }
+    out.putArray(std::span(blocks));
+    return out.take();
+  }
+
+  static BlocksJob from(std::span<const std::byte> bytes) {
+    ByteReader in(bytes);
+    BlocksJob job;
+    for (std::string* text : {&job.file, &job.shown, &job.indices.path, &job.data.path}) {
+      const std::vector<char> read = in.getArray<char>();
+      text->assign(read.begin(), read.end());
+    }
+    job.number = in.get<Number>();
+    for (ReservedColumn* column : {&job.indices, &job.data}) {
+      column->chunk = in.get<std::size_t>();
+      column->places = in.getArray<std::uint64_t>();
+    }
+    job.blocks = in.getArray<BlockChunks>();
+    return job;
+  }
+};
+
+class MatrixBlockWriter : public BlockTaker {
+ public:
+  explicit MatrixBlockWriter(BlocksJob job) : job_(std::move(job)), file_(job_.file, job_.shown) {}
+
+  void take(std::size_t block, const WholeRows& rows) override {
+    if (job_.number == Number::f32) {
+      write<float>(job_.blocks[block], rows);
+    } else {
+      write<double>(job_.blocks[block], rows);
+    }
+  }
+  void end() override { file_.close(); }
+
+ private:
+  template <class T>
+  void write(const BlockChunks& block, const WholeRows& rows) {
+    ColumnWriter<std::int32_t> indices(job_.indices, file_, block.indices, block.first_entry);
+    ColumnWriter<T> data(job_.data, file_, block.data, block.first_entry);
+    addRows(rows, rows.first, rows.first + rows.starts.size() - 1, std::span(rows.starts), indices,
+            data, [](std::size_t) {});
+    indices.flush();
+    data.flush();
+  }
+
+  BlocksJob job_;
+  ChunkFile file_;
+};
+
+/// Divides the chunks of both columns into blocks, and finds the rows of each.
+std::vector<RowRange> divide(std::span<const std::int64_t> starts, std::size_t blocks,
+                             BlocksJob& job) {
+  std::vector<RowRange> rows;
+  const auto entries = std::size_t(starts.back());
+  const auto part = [&](const ReservedColumn& column, std::size_t block) {
+    return block * column.places.size() / blocks;
+  };
+  for (std::size_t b = 0; b < blocks; ++b) {
+    BlockChunks chunks{{part(job.indices, b), part(job.indices, b + 1)},
+                       {part(job.data, b), part(job.data, b + 1)}};
+    const std::size_t first =
+        std::min(chunks.indices.first * job.indices.chunk, chunks.data.first * job.data.chunk);
+    const std::size_t last = std::min(entries, std::max(chunks.indices.last * job.indices.chunk,
+                                                        chunks.data.last * job.data.chunk));
+    const auto after = std::upper_bound(starts.begin(), starts.end(), std::int64_t(first));
+    const auto end = std::lower_bound(starts.begin(), starts.end(), std::int64_t(last));
+    rows.push_back({std::size_t(after - starts.begin()) - 1, std::size_t(end - starts.begin())});
+    chunks.first_entry = std::size_t(starts[rows.back().first]);
+    job.blocks.push_back(chunks);
+  }
+  return rows;
+}
+
+/// Writes the entries of rows that lie in several processes: each process puts blocks of whole rows
+/// together and writes their chunks.
+void writeSharedEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix,
+                        std::span<const std::int64_t> starts, Number number, Progress& progress) {
+  const auto entries = std::size_t(starts.back());
+  const h5::ChunkFile& file = group.chunks();
+  BlocksJob job{std::filesystem::absolute(file.path()).string(),
+                file.shown(),
+                number,
+                group.reserve("indices", Number::i32, entries),
+                group.reserve("data", number, entries),
+                {}};
+  // A process holds what it sends of a block, what it receives and the whole rows: all together
+  // less than a panel of its share.
+  constexpr std::size_t kHeldAtOnce = 4;
+  const auto processes = std::size_t(matrix.sharedRows()->processes());
+  const std::size_t most = ExchangeMatrix::panelBytes(matrix.bytes() / processes) / kHeldAtOnce;
+  const std::size_t rounds = entries * RowPanel::kEntryBytes / (most * processes) + 1;
+  const std::size_t blocks = std::min(rounds * processes, job.indices.places.size());
+  DealtBlocks dealt{divide(starts, blocks, job), {}};
+  dealt.job = job.bytes();
+  matrix.sharedRows()->deal(std::move(dealt), makeMatrixBlockWriter, progress);
 }
 
 /// Writes shape, indptr, indices and data.
@@ -65,11 +209,17 @@ void writeRows(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& p
   group.dataset("shape", {Number::i64, 2, 0}, shape, "");
   const std::vector<std::int64_t> indptr = rowStarts(matrix);
   group.dataset("indptr", {Number::i64, indptr.size(), 0}, indptr.data(), "");
-  if (matrix.precision() == Precision::single_precision) {
+  progress.begin("writing form factors", matrix.size());
+  const bool single = matrix.precision() == Precision::single_precision;
+  const bool chunked = std::size_t(indptr.back()) * sizeof(std::int32_t) > h5::kCompactBytes;
+  if (matrix.sharedRows() != nullptr && chunked) {
+    writeSharedEntries(group, matrix, indptr, single ? Number::f32 : Number::f64, progress);
+  } else if (single) {
     writeEntries<float>(group, matrix, indptr, progress);
   } else {
     writeEntries<double>(group, matrix, indptr, progress);
   }
+  progress.end();
 }
 
 void countRows(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
@@ -92,6 +242,10 @@ void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress&
   const std::vector<double> sums = matrix.rowSums();
   group.dataset("row_sum", {Number::f64, sums.size(), 0}, sums.data(), "");
   writeRows(group, matrix, progress);
+}
+
+std::unique_ptr<BlockTaker> makeMatrixBlockWriter(std::span<const std::byte> job) {
+  return std::make_unique<MatrixBlockWriter>(BlocksJob::from(job));
 }
 
 void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix) {

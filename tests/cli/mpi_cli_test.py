@@ -207,6 +207,29 @@ class MpiTest(CliTest):
         self.mpirun(2, *options, "-o", "many.h5")
         self.assert_same_factors("one.h5", "many.h5")
 
+    def test_the_largest_matrix_of_one_chunk_and_the_smallest_of_two_are_written(self):
+        # Of a million entries, 262,144 fill a chunk: the rows at its end are in two blocks.
+        for patches in ("20", "500", "1000"):
+            with self.subTest(patches):
+                options = ["factors", BOX, "--patches", patches, "--method", "exact",
+                           "--precision", "double"]
+                self.run_program(*options, "-o", "one.h5")
+                self.mpirun(3, *options, "-o", "many.h5")
+                self.assert_same_factors("one.h5", "many.h5")
+                os.remove(self.folder / "one.h5")
+                os.remove(self.folder / "many.h5")
+
+    def test_a_file_that_a_process_cannot_write_is_reported_once(self):
+        command = launch(3, "factors", BOX, "--patches", "2000", "--method", "exact", "-o", "f.h5")
+        limited = ["bash", "-c", "ulimit -f 9000; " + shlex.join(command)]  # of 24 MB
+        done = subprocess.run(limited, cwd=self.folder, timeout=300, text=True, capture_output=True,
+                              env=ENVIRONMENT)
+        self.assertNotEqual(done.returncode, 0)
+        lines = [line for line in done.stderr.splitlines() if line.startswith("radiosity: ")]
+        self.assertEqual(len(lines), 1, done.stderr)
+        self.assertRegex(lines[0], "f.h5: /form_factors/.* cannot be written: File too large")
+        self.assertEqual(self.files(), ["box.mtl", "box.obj"])
+
     def run_at_work(self):
         """Three processes that are at work: a launcher that still starts them waits for a dead one."""
         run = subprocess.Popen(launch(3, "factors", str(DATA / "cluttered.obj"), "--patches", "3000",

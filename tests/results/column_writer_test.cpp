@@ -60,6 +60,32 @@ TEST_F(ColumnWriterTest, HDF5ReadsColumnsOfAnyLength) {
   }
 }
 
+TEST_F(ColumnWriterTest, PartsWrittenInAnyOrderMakeTheWholeColumn) {
+  std::vector<double> values(2'000'003);
+  std::iota(values.begin(), values.end(), 0.5);
+  OutputFile target(file(), file());
+  {
+    OutputGroup root(target);
+    const ReservedColumn column = root.reserve("values", Number::f64, values.size());
+    const std::size_t chunks = column.places.size();
+    ASSERT_GE(chunks, 12u);
+    // Each part begins with some values before its chunks, and ends with some behind them.
+    for (const ChunkRange part : {ChunkRange{7, chunks}, ChunkRange{0, 1}, ChunkRange{1, 7}}) {
+      const std::size_t from = part.first * column.chunk - std::min<std::size_t>(part.first, 1000);
+      const std::size_t end = std::min(part.last * column.chunk + 777, values.size());
+      ColumnWriter<double> writer(column, root.chunks(), part, from);
+      for (std::size_t at = from; at < end;) {
+        const std::size_t piece = std::min<std::size_t>(100'000, end - at);
+        std::copy_n(values.begin() + std::ptrdiff_t(at), piece, writer.extend(piece).begin());
+        at += piece;
+      }
+      writer.flush();
+    }
+  }
+  target.close();
+  EXPECT_EQ(read<double>(), values);
+}
+
 // The checksum's sums modulo 65535 are 0 in both; only the first is stored as 0.
 TEST_F(ColumnWriterTest, HDF5TakesTheChecksumsOfZerosAndOfOnes) {
   expectBack(std::vector<std::int32_t>(100000, 0));
