@@ -39,14 +39,10 @@ std::size_t Dealing::rounds() const {
   return (dealt_.blocks.size() + processes - 1) / processes;
 }
 
-std::size_t Dealing::rowsInRound(std::size_t number) const {
+std::size_t Dealing::rowsDone(std::size_t rounds) const {
   const auto processes = std::size_t(processes_.size());
-  std::size_t rows = 0;
-  for (std::size_t k = number * processes;
-       k < std::min((number + 1) * processes, dealt_.blocks.size()); ++k) {
-    rows += dealt_.blocks[k].size();
-  }
-  return rows;
+  const std::size_t blocks = std::min(rounds * processes, dealt_.blocks.size());
+  return blocks == 0 ? 0 : dealt_.blocks[blocks - 1].last;
 }
 
 std::string Dealing::round(std::size_t number, const WhileWaiting& waiting) {

@@ -62,8 +62,8 @@ class Dealing {
           const MakeTaker& make_taker);
   /// The number of rounds. In each, every process gets at most one block.
   std::size_t rounds() const;
-  /// The rows of a round.
-  std::size_t rowsInRound(std::size_t number) const;
+  /// The rows before the end of the first `rounds` rounds.
+  std::size_t rowsDone(std::size_t rounds) const;
   /// Process 0 gets the message of a process whose taker threw, or an empty text.
   std::string round(std::size_t number, const WhileWaiting& waiting);
   /// After the last round; returns the same.

@@ -213,7 +213,7 @@ void SharedRows::deal(DealtBlocks blocks, const MakeTaker& make_taker, Progress&
       problem = round < rounds ? dealing->round(round, waiting_) : dealing->end(waiting_);
     }
     if (!problem.empty()) throw RunError(problem);
-    if (round < rounds) progress.advance(dealing->rowsInRound(round));
+    if (round < rounds) progress.advance(dealing->rowsDone(round + 1) - dealing->rowsDone(round));
   }
 }
 

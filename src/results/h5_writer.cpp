@@ -80,6 +80,7 @@ OutputFile::OutputFile(const std::string& path, std::string shown)
 
 std::unique_ptr<OutputFile> OutputFile::extend(const std::string& path) {
   std::unique_ptr<OutputFile> file(new OutputFile(Disk::Mode::extend));
+  file->path_ = path;
   file->shown_ = path;
   const Handle access = accessTo(file->disk_);
   file->file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()), H5Fclose);
