@@ -57,7 +57,7 @@ class Vrml(CliTest):
         points = "Shape { geometry PointSet { coord Coordinate { point [ 0 0 0, 1 0 0 ] } } }"
         scene = self.scene(WALL + line + points)
         self.assertEqual([s["name"] for s in scene["surfaces"]], ["wall/paint"])
-        self.assertIn("lines and points have no area and are left out, in: rope, without a name",
+        self.assertIn("lines and points have no area and are left out, in: rope, a shape without a name",
                       self.run_program("info", "a.wrl").out)
 
     def test_line_ends_of_other_systems(self):

@@ -301,7 +301,7 @@ class Rewriter {
 
   void leaveOut(pugi::xml_node parent, pugi::xml_node shape, const char* why,
                 const std::string& name) {
-    notes_.add(why, name.empty() ? "without a name" : name);
+    notes_.add(why, name.empty() ? "a shape without a name" : name);
     parent.remove_child(shape);
   }
 
