@@ -1,4 +1,4 @@
-// The cost of rays, foreseen: some rows are cast, and their errors followed.
+// The cost of rays, foreseen from the errors of some rows.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -34,9 +34,8 @@ struct FirstLook {
 struct SampledRow {
   std::size_t position = 0;
   double stands_for = 0;  ///< rows, itself included
-  RowAccuracy few;
-  RowAccuracy many;
-  double sky = 0;  ///< its share of the rays
+  RowAccuracy accuracy;   ///< by kManyRays
+  double sky = 0;         ///< its share of the rays
   double few_entries = 0;
   double entries = 0;
   double visible = 0;  ///< entries that any number of rays would find, about
@@ -67,42 +66,29 @@ void castMore(const RayScene& scene, SampledRow& sampled, const Progress& progre
   RayRow row;
   scene.cast(sampled.position, kFewRays, row, progress);
   if (row.columns.empty() || progress.cancelled()) return;
-  sampled.few = accuracyAlone(row, scene.size());
   sampled.few_entries = double(row.columns.size());
   const BothWatches watches;
   scene.cast(sampled.position, kManyRays, row, progress);
   sampled.taken = watches.elapsed();
-  sampled.many = accuracyAlone(row, scene.size());
+  sampled.accuracy = accuracyAlone(row, scene.size());
   sampled.sky = row.skyShare();
   sampled.entries = double(row.columns.size());
   sampled.visible = visibleEntries(row);
 }
 
 /// Moderates errors by those of all first looks or sampled rows, as rounds will (CommonError).
-void moderate(std::vector<FirstLook>& looks) {
+template <class Row>
+void moderate(std::vector<Row>& rows) {
   CommonError common;
-  for (const FirstLook& look : looks) common.add(look.accuracy);
-  for (FirstLook& look : looks) look.accuracy = common.moderated(look.accuracy);
-}
-void moderate(std::vector<SampledRow>& rows) {
-  CommonError few;
-  CommonError many;
-  for (const SampledRow& row : rows) {
-    few.add(row.few);
-    many.add(row.many);
-  }
-  for (SampledRow& row : rows) {
-    row.few = few.moderated(row.few);
-    row.many = many.moderated(row.many);
-  }
+  for (const Row& row : rows) common.add(row.accuracy);
+  for (Row& row : rows) row.accuracy = common.moderated(row.accuracy);
 }
 
 /// What rows have in common that says how many rays each needs.
 struct Need {
   double sky_weight = 0;
-  double usual = 0;            ///< norm of a usual row
-  double usual_whole = 0;      ///< the same with black backs
-  double order = kUsualOrder;  ///< at which error squared falls
+  double usual = 0;        ///< norm of a usual row
+  double usual_whole = 0;  ///< the same with black backs
 
   double normOf(const RowAccuracy& accuracy, double sky) const {
     return std::hypot(accuracy.norm, sky_weight * sky);
@@ -119,7 +105,7 @@ struct Need {
     const double square = std::max(kMerged * of_fronts * of_fronts, of_backs * of_backs);
     // Beyond kMostRays rows are given up and miss the tolerance: then this is too long.
     return std::max(double(kPilotRays),
-                    rays * std::pow(square / (tolerance * tolerance), 1 / order));
+                    rays * std::pow(square / (tolerance * tolerance), 1 / kUsualOrder));
   }
 };
 
@@ -192,21 +178,6 @@ std::vector<SampledRow> chooseRows(const std::vector<FirstLook>& looks, const Ne
   return rows;
 }
 
-/// The order at which error squared falls, over all rows: that of a single row is too rough.
-double orderOf(const std::vector<SampledRow>& rows) {
-  double few = 0;
-  double many = 0;
-  for (const SampledRow& row : rows) {
-    if (!(row.many.norm > 0)) continue;
-    const double weight = row.stands_for / (row.many.norm * row.many.norm);
-    few += weight * row.few.error * row.few.error;
-    many += weight * row.many.error * row.many.error;
-  }
-  if (!(few > many) || !(many > 0)) return kUsualOrder;
-  return std::clamp(std::log(few / many) / std::log(double(kManyRays) / kFewRays),
-                    kLeastForeseenOrder, kMostForeseenOrder);
-}
-
 /// Entries of a row by `rays` rays a replicate. They grow as from few to many rays, beyond that at
 /// most as by kNewEntries, and at most to all visible ones.
 double entriesBy(const SampledRow& row, double rays) {
@@ -258,7 +229,7 @@ class Forecast {
  private:
   /// Rays of a row in each replicate.
   double raysOf(const SampledRow& row, double loosened) const {
-    return need_.rays(row.many, row.sky, kManyRays, tolerance_ * loosened);
+    return need_.rays(row.accuracy, row.sky, kManyRays, tolerance_ * loosened);
   }
 
   const std::vector<SampledRow>& rows_;
@@ -315,7 +286,6 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
   progress.check();
   progress.end();
   moderate(rows);
-  need.order = orderOf(rows);
   const Forecast forecast(rows, need, aim);
   const double entries = forecast.entries(n);
   RayEstimate estimate;
