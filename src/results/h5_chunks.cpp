@@ -34,7 +34,9 @@ ChunkFile::ChunkFile(const std::string& path, std::string shown)
     : path_(path),
       shown_(std::move(shown)),
       descriptor_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
-  if (descriptor_ < 0) fail("the file");
+  if (descriptor_ >= 0) return;
+  throw RunError(fmt::format("{}: {} cannot be opened: {}; every process must see its folder",
+                             shown_, path_, std::strerror(errno)));
 }
 
 ChunkFile::~ChunkFile() {
