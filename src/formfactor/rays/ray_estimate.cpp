@@ -15,8 +15,8 @@
 namespace radiosity {
 namespace {
 
-/// Rows looked at with kFewRays: these tell the norm of a usual row. Of these, up to kMostRows are
-/// cast with kManyRays, to see how their errors fall.
+/// Rows looked at with kFewRays: these tell the norm of a usual row, and which rows need many rays.
+/// Of these, up to kMostRows are cast with kManyRays, which tell errors, entries and seconds.
 constexpr std::size_t kMostFirstRows = 512;
 constexpr std::size_t kMostRows = 96;
 /// Rays in each replicate.
