@@ -75,7 +75,7 @@ constexpr double kLookSeconds = 0.3;
 constexpr double kNoFurtherLookSeconds = 0.5;
 /// What could not be prepared in the first look would hardly be sampled in a second one shorter
 /// than this.
-constexpr double kLookUnprepared = 1;
+constexpr double kLookUnpreparedSeconds = 1;
 /// A look clips pairs for this long, in seconds of processors.
 constexpr double kClipSeconds = 0.25;
 
@@ -254,7 +254,7 @@ void planEither(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progre
   const double ray_seconds = plan.seconds;
   const std::string ray_tolerance = fmt::format("{:.2g}", plan.tolerance);
   const double most = secondsExactMayTake(prepared, ray_seconds);
-  const double least = prepared.scene ? 2 * kLookSeconds : kLookUnprepared / kLookShare;
+  const double least = prepared.scene ? 2 * kLookSeconds : kLookUnpreparedSeconds / kLookShare;
   if (!exact && most > least) {
     exact = lookAtExact(prepared, std::max(kLookSeconds, kLookShare * most), progress);
   }
