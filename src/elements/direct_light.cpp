@@ -175,13 +175,15 @@ bool EmitterLight::findAll(const ElementShape& shape, Lights& lights) const {
       all.seen.push_back({e, 0, 0});
       continue;
     }
+    const std::vector<Index>& mine = own_[facet];
+    const std::vector<Index>& its = own_[emitter.facet];
+    // With more than these, candidates will be too many, even without its own and the emitter's.
+    const std::size_t most = kMostThinned - all.candidates.size() + mine.size() + its.size();
     tree_.query(ball, {emitter.centre, emitter.radius}, front,
-                {emitter.normal, emitter.offset + touching}, found, tests);
+                {emitter.normal, emitter.offset + touching}, found, tests, most);
     std::sort(found.begin(), found.end());
     const auto first = Index(all.candidates.size());
     for (const Index o : found) {
-      const std::vector<Index>& mine = own_[facet];
-      const std::vector<Index>& its = own_[emitter.facet];
       if (std::binary_search(mine.begin(), mine.end(), o)) continue;
       if (std::binary_search(its.begin(), its.end(), o)) continue;
       const Occluder& body = occluders_->occluders[o];

@@ -87,8 +87,8 @@ void OccluderTree::build(Index node, Index first, Index count) {
 }
 
 void OccluderTree::query(const Sphere& a, const Sphere& b, const HalfSpace& front_of_a,
-                         const HalfSpace& front_of_b, std::vector<Index>& found,
-                         std::size_t& tests) const {
+                         const HalfSpace& front_of_b, std::vector<Index>& found, std::size_t& tests,
+                         std::size_t most) const {
   if (nodes_.empty()) return;
   const SphereHull hull(a, b);
   const auto reaches = [&](const Sphere& ball) {
@@ -104,7 +104,7 @@ void OccluderTree::query(const Sphere& a, const Sphere& b, const HalfSpace& fron
   Index stack[64];
   int depth = 0;
   stack[depth++] = 0;
-  while (depth > 0) {
+  while (depth > 0 && found.size() <= most) {
     const Node& node = nodes_[stack[--depth]];
     if (!reaches(node.bound)) continue;
     if (node.count == 0) {

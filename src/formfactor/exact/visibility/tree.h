@@ -1,6 +1,7 @@
 // Occluders by place: finds those that may reach into the space between two spheres.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "formfactor/exact/occluders/occluders.h"
@@ -38,9 +39,10 @@ class OccluderTree {
   explicit OccluderTree(const std::vector<Occluder>& occluders);
 
   /// Appends the occluders that may reach into the hull of two spheres on the fronts of two planes;
-  /// not sorted. Adds the spheres looked at to `tests`.
+  /// not sorted. Adds the spheres looked at to `tests`. Ends once more than `most` are found.
   void query(const Sphere& a, const Sphere& b, const HalfSpace& front_of_a,
-             const HalfSpace& front_of_b, std::vector<Index>& found, std::size_t& tests) const;
+             const HalfSpace& front_of_b, std::vector<Index>& found, std::size_t& tests,
+             std::size_t most = std::numeric_limits<std::size_t>::max()) const;
 
  private:
   struct Node {
