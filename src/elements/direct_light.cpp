@@ -150,8 +150,7 @@ bool EmitterLight::findAll(const ElementShape& shape, Lights& lights) const {
   const double touching = elements_.coincidence;
   // At smooth corners the horizon is not that of the root's plane.
   const bool curved = surface_.curved[shape.root] != 0;
-  const HalfSpace front =
-      curved ? HalfSpace{{0.0, 0.0, 0.0}, -1.0} : HalfSpace{own.normal, own.offset + touching};
+  const HalfSpace front = curved ? kAnywhere : HalfSpace{own.normal, own.offset + touching};
   std::array<Vec3, 4> corners;
   Sphere ball;
   for (std::size_t k = 0; k < 4; ++k) {

@@ -101,7 +101,7 @@ class FieldBuilder {
     out_.field.elements.resize(count);
     root_of_.resize(count);
     std::iota(root_of_.begin(), root_of_.end(), Index(0));
-    progress_.begin(fmt::format("{}, what may shade it", stage_), count, "polygons");
+    progress_.begin(fmt::format("{}, preparing", stage_), count, "elements");
     parallelFor(count, 16, [&](std::size_t r) {
       progress_.advance();
       Node& node = nodes[r];

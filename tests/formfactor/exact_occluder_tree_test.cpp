@@ -10,7 +10,6 @@ namespace radiosity {
 namespace {
 
 constexpr std::size_t kInRow = 100;
-constexpr HalfSpace kAnywhere{{0.0, 0.0, 0.0}, -1.0};
 
 /// A small triangle at a place.
 Occluder triangleAt(const Vec3& place) {

@@ -11,8 +11,6 @@
 namespace radiosity {
 namespace {
 
-/// A half-space that holds everything.
-constexpr HalfSpace kAnywhere{{0.0, 0.0, 0.0}, -1.0};
 /// Normals that agree to this: the surface is below the point's horizon, but for rounding.
 constexpr double kAligned = 1e-12;
 

@@ -33,6 +33,9 @@ struct HalfSpace {
   double offset = 0;
 };
 
+/// A half-space that holds everything.
+inline constexpr HalfSpace kAnywhere{{0.0, 0.0, 0.0}, -1.0};
+
 /// A binary tree of bounding spheres.
 class OccluderTree {
  public:
