@@ -36,26 +36,43 @@ std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
   return order;
 }
 
+/// Rows [first, last).
+struct RowStretch {
+  std::size_t first = 0;
+  std::size_t last = 0;
+};
+
 /// The compressed rows of a group without the entries themselves, checked.
 struct StoredRows {
   Number number = Number::f32;  ///< of data
   std::vector<std::int64_t> indptr;
-  std::size_t first = 0;  ///< to be read
-  std::size_t last = 0;   ///< one beyond
+  std::vector<RowStretch> chosen;  ///< to be read, by rising row
+  bool all = true;                 ///< all rows are chosen
 
-  /// Chooses the rows of a part, so that all parts have about as many entries.
+  /// Chooses the rows of a part: of kStretches stretches for each part, with about as many entries
+  /// each, one in turn. A symmetric matrix keeps a pair in the row that is first in its order, so
+  /// of two halves the first may keep three quarters of the pairs.
   void choose(const MatrixPart& part) {
+    const std::size_t stretches = part.parts == 1 ? 1 : kStretches * part.parts;
     const auto rowAt = [&](std::size_t k) {
       const std::int64_t before =
-          std::int64_t(double(indptr.back()) * double(k) / double(part.parts));
-      return k == part.parts
-                 ? indptr.size() - 1
-                 : std::size_t(std::lower_bound(indptr.begin(), indptr.end() - 1, before) -
-                               indptr.begin());
+          std::int64_t(double(indptr.back()) * double(k) / double(stretches));
+      if (k == 0 || k == stretches) return k == 0 ? 0 : indptr.size() - 1;
+      return std::size_t(std::lower_bound(indptr.begin(), indptr.end() - 1, before) -
+                         indptr.begin());
     };
-    first = part.part == 0 ? 0 : rowAt(part.part);
-    last = rowAt(part.part + 1);
+    for (std::size_t k = 0; k < stretches; ++k) {
+      const std::size_t turn = k / part.parts;
+      const std::size_t place = k % part.parts;
+      // To and fro, so that each part is as often before the others as after them.
+      if ((turn % 2 == 0 ? place : part.parts - 1 - place) != part.part) continue;
+      chosen.push_back({rowAt(k), rowAt(k + 1)});
+    }
+    all = part.parts == 1;
   }
+
+ private:
+  static constexpr std::size_t kStretches = 16;
 };
 
 /// The row starts: they rise from 0 to the number of entries, and no row is longer than the matrix.
@@ -107,8 +124,7 @@ class BlockReader {
   BlockReader(const h5::InputGroup& group, const StoredRows& rows_there, Store store)
       : group_(&group),
         indptr_(&rows_there.indptr),
-        first_(rows_there.first),
-        last_(rows_there.last),
+        chosen_(&rows_there.chosen),
         store_(std::move(store)) {
     std::size_t rows = 0;
     indices_ = group.open("indices", Number::i32, 0, rows);
@@ -118,11 +134,13 @@ class BlockReader {
   void readAll() {
     // About four chunks: enough for all threads, and small compared with a matrix worth storing.
     const auto block = std::int64_t(4 * h5::kChunkBytes / sizeof(std::int32_t));
-    for (std::size_t first = first_; first < last_;) {
-      std::size_t last = first + 1;
-      while (last < last_ && (*indptr_)[last + 1] - (*indptr_)[first] <= block) ++last;
-      read(first, last);
-      first = last;
+    for (const RowStretch& stretch : *chosen_) {
+      for (std::size_t first = stretch.first; first < stretch.last;) {
+        std::size_t last = first + 1;
+        while (last < stretch.last && (*indptr_)[last + 1] - (*indptr_)[first] <= block) ++last;
+        read(first, last);
+        first = last;
+      }
     }
   }
 
@@ -160,8 +178,7 @@ class BlockReader {
 
   const h5::InputGroup* group_;
   const std::vector<std::int64_t>* indptr_;
-  std::size_t first_;
-  std::size_t last_;
+  const std::vector<RowStretch>* chosen_;
   Store store_;
   h5::Handle indices_;
   h5::Handle data_;
@@ -205,8 +222,7 @@ void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span
   };
   BlockReader<T>(group, rows, keepUpper).readAll();
   // All rows together must have no surplus.
-  if (rows.first == 0 && rows.last == order.size() && surplus != 0)
-    group.fail("indices", "is not that of a symmetric matrix");
+  if (rows.all && surplus != 0) group.fail("indices", "is not that of a symmetric matrix");
 }
 
 template <class T>
