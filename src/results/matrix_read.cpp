@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "matrix/row_parts.h"
 #include "matrix/sort_entries.h"
 #include "results/matrix_blocks.h"
 
@@ -20,6 +21,8 @@ using h5::Number;
 namespace {
 
 constexpr std::size_t kRowGrain = 64;
+/// Of rows, for each of several processes.
+constexpr std::size_t kStretches = 16;
 
 /// The order in which a symmetric matrix stores the patches: each once.
 std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
@@ -36,18 +39,13 @@ std::vector<Index> readOrder(const h5::InputGroup& group, std::size_t n) {
   return order;
 }
 
-/// Rows [first, last).
-struct RowStretch {
-  std::size_t first = 0;
-  std::size_t last = 0;
-};
-
 /// The compressed rows of a group without the entries themselves, checked.
 struct StoredRows {
   Number number = Number::f32;  ///< of data
   std::vector<std::int64_t> indptr;
-  std::vector<RowStretch> chosen;  ///< to be read, by rising row
-  bool all = true;                 ///< all rows are chosen
+  std::vector<RowRange> chosen;  ///< to be read, by rising row
+
+  bool allChosen() const { return chosen.front().size() == indptr.size() - 1; }
 
   /// Chooses the rows of a part: of kStretches stretches for each part, with about as many entries
   /// each, one in turn. A symmetric matrix keeps a pair in the row that is first in its order, so
@@ -57,9 +55,10 @@ struct StoredRows {
     const auto rowAt = [&](std::size_t k) {
       const std::int64_t before =
           std::int64_t(double(indptr.back()) * double(k) / double(stretches));
-      if (k == 0 || k == stretches) return k == 0 ? 0 : indptr.size() - 1;
-      return std::size_t(std::lower_bound(indptr.begin(), indptr.end() - 1, before) -
-                         indptr.begin());
+      return k == stretches
+                 ? indptr.size() - 1
+                 : std::size_t(std::lower_bound(indptr.begin(), indptr.end() - 1, before) -
+                               indptr.begin());
     };
     for (std::size_t k = 0; k < stretches; ++k) {
       const std::size_t turn = k / part.parts;
@@ -68,11 +67,7 @@ struct StoredRows {
       if ((turn % 2 == 0 ? place : part.parts - 1 - place) != part.part) continue;
       chosen.push_back({rowAt(k), rowAt(k + 1)});
     }
-    all = part.parts == 1;
   }
-
- private:
-  static constexpr std::size_t kStretches = 16;
 };
 
 /// The row starts: they rise from 0 to the number of entries, and no row is longer than the matrix.
@@ -134,7 +129,7 @@ class BlockReader {
   void readAll() {
     // About four chunks: enough for all threads, and small compared with a matrix worth storing.
     const auto block = std::int64_t(4 * h5::kChunkBytes / sizeof(std::int32_t));
-    for (const RowStretch& stretch : *chosen_) {
+    for (const RowRange& stretch : *chosen_) {
       for (std::size_t first = stretch.first; first < stretch.last;) {
         std::size_t last = first + 1;
         while (last < stretch.last && (*indptr_)[last + 1] - (*indptr_)[first] <= block) ++last;
@@ -178,7 +173,7 @@ class BlockReader {
 
   const h5::InputGroup* group_;
   const std::vector<std::int64_t>* indptr_;
-  const std::vector<RowStretch>* chosen_;
+  const std::vector<RowRange>* chosen_;
   Store store_;
   h5::Handle indices_;
   h5::Handle data_;
@@ -222,7 +217,7 @@ void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span
   };
   BlockReader<T>(group, rows, keepUpper).readAll();
   // All rows together must have no surplus.
-  if (rows.all && surplus != 0) group.fail("indices", "is not that of a symmetric matrix");
+  if (rows.allChosen() && surplus != 0) group.fail("indices", "is not that of a symmetric matrix");
 }
 
 template <class T>
