@@ -1,12 +1,74 @@
 #include "matrix/own_rows.h"
 
 #include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
 
-#include "base/union_find.h"
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 
 namespace radiosity {
+
+namespace {
+
+/// Positions that are compared with a row at once.
+constexpr std::size_t kLabelBlock = 512;
+
+/// Disjoint sets of positions. All positions of a set have one label, so that a stretch of a row is
+/// compared in a few vector instructions: nearly all of a matrix's pairs are in one set already.
+class LabelledSets {
+ public:
+  explicit LabelledSets(std::size_t positions)
+      : label_(positions), next_(positions), size_(positions, 1), count_(positions) {
+    std::iota(label_.begin(), label_.end(), Index(0));
+    std::iota(next_.begin(), next_.end(), Index(0));
+  }
+  std::size_t count() const { return count_; }
+
+  /// Whether positions [first, last) are all in the set of k.
+  bool together(std::size_t k, std::size_t first, std::size_t last) const {
+    const Index own = label_[k];
+    Index different = 0;
+    for (std::size_t q = first; q < last; ++q) different |= label_[q] ^ own;
+    return different == 0;
+  }
+
+  void unite(std::size_t a, std::size_t b) {
+    if (label_[a] == label_[b]) return;
+    if (size_[label_[a]] < size_[label_[b]]) std::swap(a, b);
+    const Index kept = label_[a];
+    size_[kept] += size_[label_[b]];
+    Index at = Index(b);
+    do {
+      label_[at] = kept;
+      at = next_[at];
+    } while (at != b);
+    std::swap(next_[a], next_[b]);  // two rings become one
+    --count_;
+  }
+
+  /// The first position in the set of each.
+  std::vector<Index> firsts() const {
+    constexpr Index kNone = std::numeric_limits<Index>::max();
+    std::vector<Index> first_of(label_.size(), kNone);
+    std::vector<Index> firsts;
+    for (Index k = 0; k < label_.size(); ++k) {
+      Index& first = first_of[label_[k]];
+      if (first == kNone) first = k;
+      firsts.push_back(first);
+    }
+    return firsts;
+  }
+
+ private:
+  std::vector<Index> label_;
+  std::vector<Index> next_;  // a ring through the positions of each set
+  std::vector<Index> size_;  // by label
+  std::size_t count_;
+};
+
+}  // namespace
 
 double sumRow(const ExchangeMatrix& own, std::size_t k, std::size_t begin,
               std::span<const double> ones, std::span<double> handed_on) {
@@ -70,18 +132,20 @@ void forOwnEntries(const ExchangeMatrix& own,
 
 std::vector<Index> joinedBy(const ExchangeMatrix& own) {
   const std::size_t n = own.size();
-  UnionFind sets(n);
-  for (std::size_t k = 0; k < n && sets.sets() > 1; ++k) {
+  LabelledSets sets(n);
+  for (std::size_t k = 0; k < n && sets.count() > 1; ++k) {
     forRuns(own.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
       const std::size_t first = k + 1 + offset;
-      for (std::size_t m = 0; m < count; ++m) {
-        if (values[m] != 0) sets.unite(Index(k), Index(first + m));
+      for (std::size_t begin = 0; begin < count; begin += kLabelBlock) {
+        const std::size_t end = std::min(count, begin + kLabelBlock);
+        if (sets.together(k, first + begin, first + end)) continue;
+        for (std::size_t m = begin; m < end; ++m) {
+          if (values[m] != 0) sets.unite(k, first + m);
+        }
       }
     });
   }
-  std::vector<Index> joined(n);
-  for (std::size_t k = 0; k < n; ++k) joined[k] = sets.find(Index(k));
-  return joined;
+  return sets.firsts();
 }
 
 }  // namespace radiosity

@@ -49,15 +49,12 @@ class TrianglePass {
       rows(starts_[c], starts_[c + 1], sums[c].data(), stride);
     });
     parallelFor((rows_ + kFinishBlock - 1) / kFinishBlock, 1, [&](std::size_t block) {
+      const std::size_t begin = block * kFinishBlock;
+      const std::size_t end = std::min(rows_, begin + kFinishBlock);
+      const std::vector<double> totals = totalsOf(sums, planes, begin, end);
       std::vector<double> handed(planes);
-      const std::size_t end = std::min(rows_, (block + 1) * kFinishBlock);
-      for (std::size_t k = block * kFinishBlock; k < end; ++k) {
-        for (std::size_t p = 0; p < planes; ++p) {
-          handed[p] = 0;
-          for (std::size_t c = 0; c < chunks && starts_[c] <= k; ++c) {
-            handed[p] += sums[c].data()[p * strideOf(c) + (k - starts_[c])];
-          }
-        }
+      for (std::size_t k = begin; k < end; ++k) {
+        for (std::size_t p = 0; p < planes; ++p) handed[p] = totals[p * (end - begin) + k - begin];
         finish(k, handed.data());
       }
     });
@@ -88,6 +85,22 @@ class TrianglePass {
 
   std::size_t strideOf(std::size_t chunk) const {
     return (rows_ - starts_[chunk] + lanes_ - 1) / lanes_ * lanes_;
+  }
+
+  /// What all chunks hand on to rows [begin, end), plane by plane; it is added chunk by chunk, so
+  /// that memory is read in order.
+  std::vector<double> totalsOf(const std::vector<AlignedBuffer<double>>& sums, std::size_t planes,
+                               std::size_t begin, std::size_t end) const {
+    std::vector<double> totals(planes * (end - begin), 0.0);
+    for (std::size_t c = 0; c < sums.size() && starts_[c] < end; ++c) {
+      const std::size_t first = std::max(begin, starts_[c]);
+      for (std::size_t p = 0; p < planes; ++p) {
+        const double* from = sums[c].data() + p * strideOf(c) + (first - starts_[c]);
+        double* to = totals.data() + p * (end - begin) + (first - begin);
+        for (std::size_t k = 0; k < end - first; ++k) to[k] += from[k];
+      }
+    }
+    return totals;
   }
 
   std::size_t rows_;

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
+#include <random>
+#include <vector>
 
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
@@ -269,6 +272,43 @@ TEST(MatrixRooms, ArePatchesJoinedByLight) {
       EXPECT_EQ(rooms.of_patch[i] == rooms.of_patch[j], joined) << i << ' ' << j;
     }
   }
+}
+
+// Most rows hold a long stretch of zeros and a single entry after it, so rooms grow entry by entry.
+TEST(MatrixRooms, AreJoinedBySingleEntriesOfLongRows) {
+  constexpr std::size_t kPatches = 2100;
+  constexpr std::size_t kRooms = 7;
+  std::vector<Index> order(kPatches);
+  std::iota(order.begin(), order.end(), Index(0));
+  auto matrix = ExchangeMatrix::symmetric(std::vector<double>(kPatches, 1.0), order,
+                                          Precision::single_precision);
+  std::mt19937 random(19);
+  for (std::size_t k = 0; k + kRooms < kPatches; ++k) {
+    std::vector<double> row(kPatches - k, 0.0);
+    const std::size_t last = (kPatches - 1 - k) / kRooms;  // of the room's patches that follow
+    row[kRooms * std::uniform_int_distribution<std::size_t>(1, last)(random)] = 1e-3;
+    matrix.setUpperRow(k, row);
+  }
+  const MatrixRooms rooms = matrixRooms(matrix);
+  EXPECT_EQ(rooms.count, kRooms);
+  for (std::size_t i = 0; i < kPatches; ++i) EXPECT_EQ(rooms.of_patch[i], i % kRooms) << i;
+}
+
+// Rows whose zeros are stored between values: such zeros join nothing.
+TEST(MatrixRooms, AreNotJoinedByStoredZeros) {
+  constexpr std::size_t kPatches = 1400;
+  std::vector<Index> order(kPatches);
+  std::iota(order.begin(), order.end(), Index(0));
+  auto matrix = ExchangeMatrix::symmetric(std::vector<double>(kPatches, 1.0), order,
+                                          Precision::single_precision);
+  for (std::size_t k = 0; k + 1 < kPatches; ++k) {
+    std::vector<double> row(kPatches - k, 0.0);
+    for (std::size_t m = 2; m < row.size(); m += 2) row[m] = 1e-4;
+    matrix.setUpperRow(k, row);
+  }
+  const MatrixRooms rooms = matrixRooms(matrix);
+  EXPECT_EQ(rooms.count, 2u);
+  for (std::size_t i = 0; i < kPatches; ++i) EXPECT_EQ(rooms.of_patch[i], i % 2) << i;
 }
 
 }  // namespace
