@@ -4,23 +4,66 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "radiosity/base.h"
 
 namespace radiosity {
 
-/// Seen from the origin, sr; > 0 where the corners run clockwise to the eye, that is, where it
-/// looks at the triangle's back. Exact to rounding (van Oosterom & Strackee, "The solid angle of a
-/// plane triangle", IEEE Trans. Biomed. Eng. 30, 1983). Triangles of a closed surface that faces
-/// outwards sum to 4 pi about a point inside, to 0 about one outside.
-inline double signedSolidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
+/// A complex number whose argument is half of a solid angle.
+struct HalfAngle {
+  double real = 1;
+  double imaginary = 0;
+};
+
+/// Half of the signedSolidAngle() of a triangle (van Oosterom & Strackee, "The solid angle of a
+/// plane triangle", IEEE Trans. Biomed. Eng. 30, 1983).
+inline HalfAngle halfSolidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = glm::length(a);
   const double lb = glm::length(b);
   const double lc = glm::length(c);
-  return 2 *
-         std::atan2(glm::dot(a, glm::cross(b, c)),
-                    la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
+  return {la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb,
+          glm::dot(a, glm::cross(b, c))};
 }
+
+/// Seen from the origin, sr; > 0 where the corners run clockwise to the eye, that is, where it
+/// looks at the triangle's back. Exact to rounding. Triangles of a closed surface that faces
+/// outwards sum to 4 pi about a point inside, to 0 about one outside.
+inline double signedSolidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const HalfAngle half = halfSolidAngle(a, b, c);
+  return 2 * std::atan2(half.imaginary, half.real);
+}
+
+/// Sums solid angles with a single arctangent, which would take most of the time: arguments add
+/// where complex numbers multiply, and full turns are counted.
+class SolidAngleSum {
+ public:
+  void add(const HalfAngle& half) {
+    const double real = sum_.real * half.real - sum_.imaginary * half.imaginary;
+    // + 0.0 makes a zero positive: an argument of -pi would be a turn too few.
+    const double imaginary = sum_.real * half.imaginary + sum_.imaginary * half.real + 0.0;
+    const double size = std::abs(real) + std::abs(imaginary);
+    if (size == 0) return;  // seen from a corner
+    const bool was_up = sum_.imaginary >= 0;
+    const bool adds_up = half.imaginary >= 0;
+    const bool both_left = sum_.real < 0 && half.real < 0;
+    if (was_up && adds_up) {  // together 0 to a full turn
+      if (imaginary < 0 || (imaginary == 0 && both_left)) ++turns_;
+    } else if (!was_up && !adds_up) {  // together less than 0, to a full turn back
+      if (imaginary > 0 || (imaginary == 0 && (both_left || real < 0))) --turns_;
+    }
+    sum_ = {real / size, imaginary / size};
+  }
+
+  /// sr.
+  double value() const {
+    return 2 * (2 * std::numbers::pi * turns_ + std::atan2(sum_.imaginary, sum_.real));
+  }
+
+ private:
+  HalfAngle sum_;
+  int turns_ = 0;
+};
 
 /// The same of a planar polygon with the corners point(0) .. point(count - 1), over a fan: parts of
 /// the fan outside a concave polygon cancel.

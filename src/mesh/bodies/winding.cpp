@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "base/parallel.h"
 #include "base/union_find.h"
 #include "mesh/box_pairs.h"
 #include "scene/checks/winding_tree.h"
@@ -18,6 +19,9 @@ namespace {
 /// but for a little more than coincidence, and no edge parts what lies in the contact from the
 /// rest: a cell with a corner 4e-6 m inside another body. Then each cell looks for itself.
 constexpr std::size_t kEyes = 5;
+
+/// The winding numbers that a thread finds at a time.
+constexpr std::size_t kPairsAtOnce = 64;
 
 /// A cell at an edge, with the spaces on its sides of larger and of smaller angles about the edge.
 /// (RingCell of hollows.cpp has the angle, too, since any number of cells may be at an edge there.)
@@ -94,22 +98,33 @@ class Surroundings {
     boxes.insert(boxes.end(), boxes_.begin(), boxes_.end());
     std::vector<Index> bodies(closed_.size());
     std::iota(bodies.begin(), bodies.end(), Index(eyes.size()));
+    std::vector<std::pair<Index, Index>> pairs;  // an eye, a closed component
+    for (const auto& [eye, box] : overlappingPairs(boxes, bodies)) {
+      if (eye < eyes.size() && box >= eyes.size()) pairs.emplace_back(eye, box - eyes.size());
+    }
+    std::vector<int> numbers(pairs.size());
+    parallelFor(pairs.size(), kPairsAtOnce, [&](std::size_t p) {
+      numbers[p] = numberAt(eyes[pairs[p].first], pairs[p].second);
+    });
     std::vector<std::vector<Winding::Entry>> seen(eyes.size());
     // Pairs are sorted by eye, then by component, so entries ascend.
-    for (const auto& [eye, box] : overlappingPairs(boxes, bodies)) {
-      if (eye >= eyes.size() || box < eyes.size()) continue;
-      const std::size_t k = box - eyes.size();
-      const PlaneCell& cell = cells_[eyes[eye] / 2];
-      const Side side = eyes[eye] % 2 == 0 ? kAbove : kBelow;
-      const double w = trees_[k].around(inFrontOf(cell, side), cell.plane) +
-                       ownPlane(cell, side, closed_[k], sheets_, components_);
-      const int whole = int(std::lround(w));
-      if (whole != 0) seen[eye].push_back({closed_[k], whole});
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const auto [eye, k] = pairs[p];
+      if (numbers[p] != 0) seen[eye].push_back({closed_[k], numbers[p]});
     }
     return seen;
   }
 
  private:
+  /// The winding number of the k-th closed component at an eye.
+  int numberAt(Index eye, std::size_t k) const {
+    const PlaneCell& cell = cells_[eye / 2];
+    const Side side = eye % 2 == 0 ? kAbove : kBelow;
+    const double w = trees_[k].around(inFrontOf(cell, side), cell.plane) +
+                     ownPlane(cell, side, closed_[k], sheets_, components_);
+    return int(std::lround(w));
+  }
+
   /// A point off the cell, past surfaces that coincide with it but have planes of their own.
   Vec3 inFrontOf(const PlaneCell& cell, Side side) const {
     const double height = 2.0 * coincidence_;

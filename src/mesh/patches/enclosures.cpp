@@ -72,7 +72,10 @@ void forFans(const PatchMesh& mesh, std::span<const Index> polygons, const Visit
 class EnclosureSearch {
  public:
   EnclosureSearch(const PatchMesh& mesh, Progress& progress)
-      : mesh_(mesh), progress_(progress), first_(firstAtSamePoint(mesh)) {}
+      : mesh_(mesh),
+        progress_(progress),
+        first_(firstAtSamePoint(mesh)),
+        coincidence_(coincidenceOf(mesh)) {}
 
   Enclosures run() {
     found_.surface_of.assign(mesh_.polygons.size(), kNone);
@@ -168,7 +171,7 @@ class EnclosureSearch {
                                     [&](Index p) { return found_.covered[p] != 0; });
       const bool closed = !flat && std::none_of(polygons.begin(), polygons.end(),
                                                 [&](Index p) { return open[p] != 0; });
-      if (closed && isEmbedded(mesh_, first_, polygons, coincidenceOf(mesh_))) {
+      if (closed && isEmbedded(mesh_, first_, polygons, coincidence_)) {
         addSurface(std::move(polygons));
       }
     });
@@ -248,6 +251,7 @@ class EnclosureSearch {
   const PatchMesh& mesh_;
   Progress& progress_;
   std::vector<Index> first_;
+  double coincidence_;
   Enclosures found_;
 };
 

@@ -1,6 +1,7 @@
 #include "scene/checks/winding_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <utility>
@@ -16,6 +17,10 @@ namespace {
 /// at most about 1/16 of the node's own, and terms of opposite sides of a part cancel. The error is
 /// far below the quarter that would change an answer.
 constexpr double kFarRadii = 4;
+
+/// Above the levels of any tree, since children have half of the triangles each. A walk keeps one
+/// node a level waiting, and one more.
+constexpr std::size_t kMostLevels = 66;
 
 }  // namespace
 
@@ -67,13 +72,14 @@ void WindingTree::measure(Node& node) const {
 }
 
 double WindingTree::around(const Vec3& point, Index own) const {
-  double angle = 0;
-  std::vector<std::size_t> waiting;
-  if (!nodes_.empty()) waiting.push_back(0);
-  while (!waiting.empty()) {
-    const std::size_t number = waiting.back();
+  double angle = 0;  // of nodes that count together
+  SolidAngleSum near;
+  std::array<std::size_t, kMostLevels> waiting;
+  std::size_t count = 0;
+  if (!nodes_.empty()) waiting[count++] = 0;
+  while (count > 0) {
+    const std::size_t number = waiting[--count];
     const Node& node = nodes_[number];
-    waiting.pop_back();
     const Vec3 towards = node.middle - point;
     const double distance = glm::length(towards);
     if (distance > kFarRadii * node.radius) {
@@ -82,16 +88,16 @@ double WindingTree::around(const Vec3& point, Index own) const {
       for (std::size_t k = node.begin; k < node.end; ++k) {
         const Triangle& t = triangles_[k];
         if (own == kNone || t.plane != own) {
-          angle +=
-              signedSolidAngle(t.corners[0] - point, t.corners[1] - point, t.corners[2] - point);
+          near.add(
+              halfSolidAngle(t.corners[0] - point, t.corners[1] - point, t.corners[2] - point));
         }
       }
     } else {
-      waiting.push_back(number + 1);
-      waiting.push_back(node.second);
+      waiting[count++] = number + 1;
+      waiting[count++] = node.second;
     }
   }
-  return angle / (4 * std::numbers::pi);
+  return (angle + near.value()) / (4 * std::numbers::pi);
 }
 
 }  // namespace radiosity
