@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <numeric>
@@ -12,10 +11,10 @@
 #include <tuple>
 #include <utility>
 
-#include "base/geometry/box_tree.h"
 #include "base/parallel.h"
 #include "mesh/clusters/agglomerate.h"
 #include "mesh/clusters/canonical_order.h"
+#include "mesh/clusters/nearest_tree.h"
 
 namespace radiosity {
 
@@ -142,58 +141,29 @@ class FrontClusters {
   void offerNearestOf(const std::vector<Index>& clusters, Progress& progress) {
     if (clusters.size() < 2) return;
     progress.check();
-    std::vector<Box3> boxes;
-    boxes.reserve(clusters.size());
-    for (const Index k : clusters) boxes.push_back({centroid(k), centroid(k)});
-    const BoxTree tree(boxes);
+    std::vector<NearestTree::Point> points;
+    points.reserve(clusters.size());
+    for (const Index k : clusters) points.push_back(placeOf(parts_.at(k)));
+    const NearestTree tree(std::move(points));
+    const auto distance2 = [&](Index a, Index b) {
+      return parts_.distance2(clusters[a], clusters[b], bend_);
+    };
     std::vector<std::vector<Index>> nearest(clusters.size());
     parallelFor(clusters.size(), 64, [&](std::size_t c) {
-      if (!progress.cancelled()) nearest[c] = nearestOf(clusters, Index(c), tree);
+      if (!progress.cancelled()) nearest[c] = tree.nearestTo(Index(c), kNearest, distance2);
     });
     progress.check();
     for (std::size_t c = 0; c < clusters.size(); ++c) {
-      for (const Index other : nearest[c]) parts_.offer(clusters[c], other);
+      for (const Index other : nearest[c]) parts_.offer(clusters[c], clusters[other]);
     }
   }
 
-  /// Searches within a reach that grows until there are enough: a tree search does not visit the
-  /// nearest first.
-  std::vector<Index> nearestOf(const std::vector<Index>& clusters, Index c,
-                               const BoxTree& tree) const {
-    const double all = tree.bound().diagonal() + 2 * bend_;
-    double reach = std::sqrt(parts_.at(clusters[c]).area);
-    for (;; reach *= 2) {
-      std::vector<Index> found = nearestWithin(reach, clusters, c, tree);
-      if (found.size() == kNearest || reach > all) return found;
-    }
+  /// The place of a cluster in the space of distance2().
+  NearestTree::Point placeOf(const Agglomerate& cluster) const {
+    const Vec3 centroid = cluster.moment / cluster.area;
+    const Vec3 turn = bend_ * (cluster.normals / cluster.area);
+    return {centroid.x, centroid.y, centroid.z, turn.x, turn.y, turn.z};
   }
-
-  std::vector<Index> nearestWithin(double reach, const std::vector<Index>& clusters, Index c,
-                                   const BoxTree& tree) const {
-    std::vector<std::pair<double, Index>> found;  // ascending
-    const Vec3 here = centroid(clusters[c]);
-    double most = reach * reach;
-    tree.search(
-        [&](const Box3& box) {
-          const Vec3 away = glm::max(glm::max(box.low - here, here - box.high), Vec3(0.0));
-          return glm::dot(away, away) <= most;
-        },
-        [&](Index other) {
-          const std::pair next{parts_.distance2(clusters[c], clusters[other], bend_),
-                               clusters[other]};
-          if (other == c || next.first > most) return true;
-          found.insert(std::lower_bound(found.begin(), found.end(), next), next);
-          if (found.size() > kNearest) found.pop_back();
-          if (found.size() == kNearest) most = found.back().first;
-          return true;
-        });
-    std::vector<Index> out;
-    out.reserve(found.size());
-    for (const auto& [distance2, other] : found) out.push_back(other);
-    return out;
-  }
-
-  Vec3 centroid(Index k) const { return parts_.at(k).moment / parts_.at(k).area; }
 
   const PatchMesh& mesh_;
   std::span<const Index> fronts_;
