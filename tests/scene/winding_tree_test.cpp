@@ -95,6 +95,13 @@ TEST(SolidAngleSum, TakesAnglesAtTheEndsOfTheirRange) {
   EXPECT_DOUBLE_EQ(sumOf({{-1, 0}, {-1, 0}, {-1, 0}}), 6 * pi);
   EXPECT_DOUBLE_EQ(sumOf({{-1, -tiny}}), -2 * pi);
   EXPECT_DOUBLE_EQ(sumOf({{-1, -tiny}, {-1, -tiny}}), -4 * pi);
+  // The sign of a zero tells the side from which a point on a triangle sees it.
+  EXPECT_DOUBLE_EQ(sumOf({{-1, -0.0}}), -2 * pi);
+  EXPECT_DOUBLE_EQ(sumOf({{-1, -0.0}, {-1, -0.0}}), -4 * pi);
+  EXPECT_DOUBLE_EQ(sumOf({{-1, -0.0}, {-1, -0.0}, {-1, -0.0}}), -6 * pi);
+  EXPECT_DOUBLE_EQ(sumOf({{-1, -0.0}, {-1, 0.0}}), 0);
+  EXPECT_DOUBLE_EQ(sumOf({{1, -0.0}, {-1, -0.0}}), -2 * pi);
+  EXPECT_DOUBLE_EQ(sumOf({{-1, 0.0}, {1, -0.0}}), 2 * pi);
   EXPECT_DOUBLE_EQ(sumOf({{0, -1}, {0, -1}}), -2 * pi);
   EXPECT_DOUBLE_EQ(sumOf({{0, 1}, {0, 1}}), 2 * pi);
   EXPECT_NEAR(sumOf({{-1, 0}, {-1, -tiny}}), 0, 1e-15);

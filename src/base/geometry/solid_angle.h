@@ -40,17 +40,19 @@ class SolidAngleSum {
  public:
   void add(const HalfAngle& half) {
     const double real = sum_.real * half.real - sum_.imaginary * half.imaginary;
-    // + 0.0 makes a zero positive: an argument of -pi would be a turn too few.
-    const double imaginary = sum_.real * half.imaginary + sum_.imaginary * half.real + 0.0;
+    double imaginary = sum_.real * half.imaginary + sum_.imaginary * half.real;
     const double size = std::abs(real) + std::abs(imaginary);
     if (size == 0) return;  // seen from a corner
-    const bool was_up = sum_.imaginary >= 0;
-    const bool adds_up = half.imaginary >= 0;
-    const bool both_left = sum_.real < 0 && half.real < 0;
-    if (was_up && adds_up) {  // together 0 to a full turn
-      if (imaginary < 0 || (imaginary == 0 && both_left)) ++turns_;
-    } else if (!was_up && !adds_up) {  // together less than 0, to a full turn back
-      if (imaginary > 0 || (imaginary == 0 && (both_left || real < 0))) --turns_;
+    // As for atan2(), a zero has a sign: on a triangle its half angle is pi or -pi.
+    const bool down = std::signbit(half.imaginary);
+    if (std::signbit(sum_.imaginary) == down) {  // together up to a full turn, one way
+      const bool both_left = sum_.real < 0 && half.real < 0;
+      if (imaginary == 0) {
+        if (both_left) turns_ += down ? -1 : 1;
+        imaginary = down ? -0.0 : 0.0;
+      } else if (std::signbit(imaginary) != down) {
+        turns_ += down ? -1 : 1;
+      }
     }
     sum_ = {real / size, imaginary / size};
   }
