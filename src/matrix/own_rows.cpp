@@ -1,7 +1,6 @@
 #include "matrix/own_rows.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -50,7 +49,6 @@ class LabelledSets {
 
   /// The first position in the set of each.
   std::vector<Index> firsts() const {
-    constexpr Index kNone = std::numeric_limits<Index>::max();
     std::vector<Index> first_of(label_.size(), kNone);
     std::vector<Index> firsts;
     for (Index k = 0; k < label_.size(); ++k) {
