@@ -143,8 +143,8 @@ class Pipeline {
   /// call serve() meanwhile.
   void share(Processes& processes) { processes_ = &processes; }
   /// In the others, after open() with the input of process 0: does a task for process 0 (not
-  /// SharedTask::end), then serves its requests for these rows until it is done with them. Errors:
-  /// RunError if the mesh is not that of process 0.
+  /// SharedTask::end). Where the task makes rows, serves its requests for these until it is done
+  /// with them. Errors: RunError if the mesh is not that of process 0.
   void serve(Processes& processes, SharedTask task);
 
   // ---- Options: those of the results file's stages, else the defaults. A stage whose options are

@@ -15,9 +15,10 @@
 
 namespace radiosity {
 
-/// The next task that process 0 gives to the others (nextTask()).
+/// The next task that process 0 gives to the others.
 enum class SharedTask : std::uint32_t {
   end,           ///< to finish
+  mesh,          ///< to mesh the scene, while process 0 does
   form_factors,  ///< src/formfactor/shared_factors.h
   stored_matrix  ///< to read a share of the rows of a results file
 };

@@ -36,6 +36,7 @@ int serveCommand(const Request& request, Processes& processes) {
     SharedTask task = SharedTask::end;
     processes.broadcastValue(task);
     switch (task) {
+      case SharedTask::mesh:
       case SharedTask::form_factors:
       case SharedTask::stored_matrix:
         scene.pipeline().serve(processes, task);

@@ -145,7 +145,7 @@ double ExchangeMatrix::at(std::size_t i, std::size_t j) const {
 }
 
 std::vector<Index> ExchangeMatrix::rowEntries() const {
-  if (shared_) return shared_->sizes().row_entries;
+  if (shared_) return shared_->rowEntries();
   std::vector<Index> entries(size(), 0);
   parallelFor(rows_.size(), kCountedRows, [&](std::size_t i) {
     viewOf(i).forEntries(0, size(), [&](Index, double) { ++entries[i]; });

@@ -22,6 +22,7 @@ constexpr std::size_t kRowGrain = 64;
 enum class Request : std::uint32_t {
   product,
   row_sums,
+  row_entries,
   sizes,
   panel,
   deal,
@@ -40,13 +41,16 @@ struct Order {
   std::uint64_t last = 0;
 };
 
-/// Row entries, then bytes and dense rows: integers, which sums of doubles keep exactly.
-std::vector<double> sizesOf(const ExchangeMatrix& own) {
+// Integers, which sums of doubles keep exactly.
+
+std::vector<double> rowEntriesOf(const ExchangeMatrix& own) {
   const std::vector<Index> entries = own.rowEntries();
-  std::vector<double> sizes(entries.begin(), entries.end());
-  sizes.push_back(double(own.bytes()));
-  sizes.push_back(double(own.denseRows()));
-  return sizes;
+  return {entries.begin(), entries.end()};
+}
+
+/// Bytes and dense rows.
+std::vector<double> sizesOf(const ExchangeMatrix& own) {
+  return {double(own.bytes()), double(own.denseRows())};
 }
 
 RowOwners findOwners(Processes& processes, const ExchangeMatrix& own, const WhileWaiting& waiting) {
@@ -166,17 +170,22 @@ std::vector<double> SharedRows::rowSums() const {
   return orderedRowSums(processes_, own_, owners_, waiting_);
 }
 
+std::vector<Index> SharedRows::rowEntries() const {
+  const SharedStep step(processes_);
+  Order order{.request = Request::row_entries};
+  processes_.broadcastValue(order, waiting_);
+  std::vector<double> sums = rowEntriesOf(own_);
+  processes_.sum(sums, waiting_);
+  return {sums.begin(), sums.end()};
+}
+
 SharedRows::Sizes SharedRows::sizes() const {
   const SharedStep step(processes_);
   Order order{.request = Request::sizes};
   processes_.broadcastValue(order, waiting_);
   std::vector<double> sums = sizesOf(own_);
   processes_.sum(sums, waiting_);
-  Sizes sizes;
-  sizes.row_entries.assign(sums.begin(), sums.begin() + std::ptrdiff_t(own_.size()));
-  sizes.bytes = std::size_t(sums[own_.size()]);
-  sizes.dense_rows = std::size_t(sums[own_.size() + 1]);
-  return sizes;
+  return {std::size_t(sums[0]), std::size_t(sums[1])};
 }
 
 void SharedRows::panel(std::size_t first, std::size_t last, std::vector<std::size_t>& starts,
@@ -267,6 +276,10 @@ void serveRows(Processes& processes, const ExchangeMatrix& own, const MakeTaker&
       }
       case Request::row_sums:
         orderedRowSums(processes, own, owners, {});
+        break;
+      case Request::row_entries:
+        values = rowEntriesOf(own);
+        processes.sum(values);
         break;
       case Request::sizes:
         values = sizesOf(own);

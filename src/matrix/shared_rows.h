@@ -41,9 +41,10 @@ class SharedRows {
   /// The row sums, with the same bits as in one process: partial sums pass from process to process
   /// in the order of the rows.
   std::vector<double> rowSums() const;
+  /// The numbers of entries other than 0.
+  std::vector<Index> rowEntries() const;
   /// Sizes of all rows together.
   struct Sizes {
-    std::vector<Index> row_entries;
     std::size_t bytes = 0;
     std::size_t dense_rows = 0;
   };

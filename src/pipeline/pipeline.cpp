@@ -235,6 +235,10 @@ ExchangeMatrix Pipeline::shareRows(Processes& processes) {
 }
 
 void Pipeline::serve(Processes& processes, SharedTask task) {
+  if (task == SharedTask::mesh) {
+    mesh();
+    return;
+  }
   if (task == SharedTask::form_factors) {
     serveRows(processes, shareRows(processes), makeMatrixBlockWriter);
     return;

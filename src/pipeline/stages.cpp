@@ -112,7 +112,15 @@ const MeshResult& Pipeline::mesh() {
   }
   const std::string reason = why(stored_.mesh_key, key);
   const Stopwatch watch;
+  std::optional<SharedStep> step;
+  if (processes_ != nullptr) {
+    // The others will need the mesh, too: they make it now, not after this process has planned.
+    SharedTask task = SharedTask::mesh;
+    processes_->broadcastValue(task);
+    step.emplace(*processes_);
+  }
   results_.mesh = meshScene(scene(), options_.mesh, progress_);
+  step.reset();
   results_.mesh_key = key.text();
   stored_.mesh.reset();
   computed(Stage::mesh, reason, watch.seconds());

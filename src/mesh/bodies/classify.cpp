@@ -241,8 +241,9 @@ void Classifier::noteHollows() {
 std::vector<VisibleCell> classify(const Scene& scene, const InputFaces& input,
                                   const std::vector<Plane>& planes, const EdgeTable& edges,
                                   const Arrangement& arrangement, const std::vector<Sheet>& sheets,
-                                  const Components& components, MeshReport& report) {
-  const Winding winding(arrangement, planes, sheets, components, input.coincidence);
+                                  const Components& components, MeshReport& report,
+                                  Progress& progress) {
+  const Winding winding(arrangement, planes, sheets, components, input.coincidence, progress);
   const Bodies bodies(arrangement, sheets, components, winding, input.coincidence);
   const Hollows hollows(scene, input, planes, edges, arrangement, sheets);
   Classifier classifier(scene, arrangement, sheets, components, winding, bodies, hollows, report);

@@ -28,6 +28,7 @@ struct VisibleCell {
 std::vector<VisibleCell> classify(const Scene& scene, const InputFaces& input,
                                   const std::vector<Plane>& planes, const EdgeTable& edges,
                                   const Arrangement& arrangement, const std::vector<Sheet>& sheets,
-                                  const Components& components, MeshReport& report);
+                                  const Components& components, MeshReport& report,
+                                  Progress& progress);
 
 }  // namespace radiosity

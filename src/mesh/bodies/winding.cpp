@@ -76,12 +76,14 @@ WindingTree treeOf(const Component& component) {
 class Surroundings {
  public:
   Surroundings(const std::vector<PlaneCell>& cells, const std::vector<Plane>& planes,
-               const std::vector<Sheet>& sheets, const Components& components, double coincidence)
+               const std::vector<Sheet>& sheets, const Components& components, double coincidence,
+               Progress& progress)
       : cells_(cells),
         planes_(planes),
         sheets_(sheets),
         components_(components),
-        coincidence_(coincidence) {
+        coincidence_(coincidence),
+        progress_(progress) {
     for (Index c = 0; c < components.list.size(); ++c) {
       const Component& component = components.list[c];
       if (!component.closed) continue;
@@ -104,8 +106,10 @@ class Surroundings {
     }
     std::vector<int> numbers(pairs.size());
     parallelFor(pairs.size(), kPairsAtOnce, [&](std::size_t p) {
+      if (progress_.cancelled()) return;
       numbers[p] = numberAt(eyes[pairs[p].first], pairs[p].second);
     });
+    progress_.check();
     std::vector<std::vector<Winding::Entry>> seen(eyes.size());
     // Pairs are sorted by eye, then by component, so entries ascend.
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -136,6 +140,7 @@ class Surroundings {
   const std::vector<Sheet>& sheets_;
   const Components& components_;
   double coincidence_;
+  Progress& progress_;
   std::vector<Index> closed_;
   std::vector<WindingTree> trees_;  // of each closed component
   std::vector<Box3> boxes_;
@@ -182,10 +187,10 @@ bool agree(std::span<const std::vector<Winding::Entry>> lists) {
 }  // namespace
 
 Winding::Winding(const Arrangement& arrangement, const std::vector<Plane>& planes,
-                 const std::vector<Sheet>& sheets, const Components& components,
-                 double coincidence) {
+                 const std::vector<Sheet>& sheets, const Components& components, double coincidence,
+                 Progress& progress) {
   const auto& cells = arrangement.cells;
-  const Surroundings around(cells, planes, sheets, components, coincidence);
+  const Surroundings around(cells, planes, sheets, components, coincidence, progress);
   const std::vector<std::vector<Index>> members = membersOf(cells, joinSpaces(arrangement));
   std::vector<Index> eyes;
   for (const std::vector<Index>& sides : members) {

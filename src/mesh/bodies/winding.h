@@ -5,6 +5,7 @@
 
 #include "mesh/arrangement/arrangement.h"
 #include "mesh/bodies/components.h"
+#include "radiosity/base.h"
 
 namespace radiosity {
 
@@ -15,7 +16,8 @@ enum Side : int { kAbove = 0, kBelow = 1 };
 class Winding {
  public:
   Winding(const Arrangement& arrangement, const std::vector<Plane>& planes,
-          const std::vector<Sheet>& sheets, const Components& components, double coincidence);
+          const std::vector<Sheet>& sheets, const Components& components, double coincidence,
+          Progress& progress);
 
   /// Winding number of closed component `component` in the space next to a side of a cell: 1
   /// inside, 0 outside (other numbers where the component overlaps itself).

@@ -177,8 +177,8 @@ std::vector<Index> Attempt::merge(CoarseComplex& complex) {
   report_.nonmanifold_edges = countNonManifold(edges_);
   accountForWelding(input_, planes_, sheets_, edges_, arrangement_, report_);
   const Components components = findComponents(input_, planes_, sheets_, edges_, scene_);
-  const auto visible =
-      classify(scene_, input_, planes_, edges_, arrangement_, sheets_, components, report_);
+  const auto visible = classify(scene_, input_, planes_, edges_, arrangement_, sheets_, components,
+                                report_, progress_);
   std::vector<Index> broken;
   complex =
       mergeCells(scene_, input_, planes_, sheets_, edges_, arrangement_, visible, report_, broken);

@@ -11,13 +11,13 @@
 namespace radiosity {
 namespace {
 
-/// Pairs are clipped to time their work, in up to kRounds rounds, until kClipShare of all foreseen
-/// work is done, but for no less than the seconds given, or until kMuchOfAll is done, and no more
-/// than kMostTimes the seconds. Few pairs, near to each other, may carry half of the time. Many
-/// short batches meet them.
+/// Pairs are clipped to time their work, in up to kRounds rounds, until a share of all foreseen
+/// work is done: kMuchOfAll at first, falling to kClipShare when the seconds given are over. After
+/// kMostTimes the seconds it ends in any case. Few pairs, near to each other, may carry half of the
+/// time. Many short batches meet them.
 constexpr std::size_t kRounds = 16;
 constexpr double kClipShare = 0.02;
-constexpr double kMuchOfAll = 0.15;
+constexpr double kMuchOfAll = 0.08;
 constexpr double kMostTimes = 3;
 /// A round clips about kPairsARound pairs, shared out by foreseen work, none from places and
 /// classes with less than kLeastShare of it; a batch has at most kBatchWork, about two
@@ -133,7 +133,7 @@ class ClipRounds {
  private:
   bool isOver() const {
     const double taken = taken_.load();
-    const double enough = taken >= seconds_ ? kClipShare : kMuchOfAll;
+    const double enough = std::lerp(kMuchOfAll, kClipShare, std::min(1.0, taken / seconds_));
     return progress_.cancelled() || taken >= kMostTimes * seconds_ || done_.load() >= enough * all_;
   }
 
