@@ -3,11 +3,11 @@
 
 Pictures of 256 x 256 pixels by the cameras of scenes of data/, from scene file to picture on one
 thread: patches alone (--elements off), more and more of them; elements, to finer and finer
-tolerances; light at every pixel (--final-gather); a path tracer, with more and more paths a pixel.
-The error is relL2 of linear radiance over means of 8 x 8 pixels, of blocks that see neither lamp
-nor background. Truth is an independent path tracer's, TRACER, in every seventh block, with
-independent sets of points that tell its own standard error; it is kept in the folder. Then the
-penumbra of a lamp behind a bar along a line of points, whose truth is a closed form.
+tolerances, and of more patches; light at every pixel (--final-gather); a path tracer, with more and
+more paths a pixel. The error is relL2 of linear radiance over means of 8 x 8 pixels, of blocks that
+see neither lamp nor background. Truth is an independent path tracer's, TRACER, in every seventh
+block, with independent sets of points that tell its own standard error; it is kept in the folder.
+Then the penumbra of a lamp behind a bar along a line of points, whose truth is a closed form.
 
   --quick        fewer settings, and truth of fewer paths: a few minutes
   --scene NAME   this one alone
@@ -44,12 +44,14 @@ LIMIT = 3600  # seconds of a run
 PATCHES = "patches"
 ELEMENTS = "elements"
 FEW = "elements of 1,000 patches"
+MANY = "elements of more patches"
 GATHER = "final gather"
 PATHS = "path tracer"
 SETTINGS = {
     PATCHES: (1000, 2000, 5000, 10000, 20000),
     ELEMENTS: (0.1, 0.03, 0.01, 0.003),
     FEW: (0.1, 0.03, 0.01),
+    MANY: (6000, 12000, 20000),
     GATHER: (1000, 2000),  # patches
     PATHS: (1, 4, 16, 64, 256),
 }
@@ -57,7 +59,8 @@ QUICK = {PATCHES: (1000, 5000), ELEMENTS: (0.03, 0.01), GATHER: (1000,), PATHS: 
 PENUMBRA = {"patches, 2,000": ("--elements", "off"), "elements": (),
             "final gather": ("--final-gather",)}
 STYLES = {PATCHES: ("#0072B2", "s"), ELEMENTS: ("#D55E00", "o"),
-          FEW: ("#CC79A7", "v"), GATHER: ("#009E73", "D"), PATHS: ("#666666", "^")}
+          FEW: ("#CC79A7", "v"), MANY: ("#E69F00", "P"), GATHER: ("#009E73", "D"),
+          PATHS: ("#666666", "^")}
 STAGES = {"mesh_s": "mesh", "factors_s": "factors", "solve_s": "solve", "elements_s": "elements",
           "rest_s": "picture and rest"}
 COLUMNS = {"scene": "scene", "way": "way", "setting": "setting", "patches": "patches",
@@ -175,6 +178,8 @@ class Bench:
             return self.rendered(scene, "--elements", "off", "--patches", setting)
         if way == GATHER:
             return self.rendered(scene, "--final-gather", "--patches", setting)
+        if way == MANY:
+            return self.rendered(scene, "--patches", setting)
         few = ("--patches", 1000) if way == FEW else ()
         return self.rendered(scene, "--element-tolerance", setting, *few)
 
