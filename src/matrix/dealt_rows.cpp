@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "base/byte_stream.h"
-#include "matrix/run_row.h"
+#include "matrix/row_owners.h"
+#include "matrix/run_bytes.h"
 
 namespace radiosity {
 
@@ -32,11 +33,10 @@ std::vector<std::size_t> sharesOf(const ExchangeMatrix& whole, std::size_t proce
   return starts;
 }
 
-void putRow(const ExchangeMatrix& whole, std::size_t k, ByteWriter& bytes) {
-  const ExchangeMatrix::UpperEntries row = whole.upperEntries(k);
+void putRow(const ExchangeMatrix& matrix, std::size_t k, ByteWriter& bytes) {
   bytes.put(Index(k));
-  bytes.putArray(std::span(row.positions));
-  bytes.putArray(std::span(row.factors));
+  bytes.put(matrix.diagonal(k));
+  putRuns(matrix.upperRuns(k), matrix.precision(), bytes);
 }
 
 /// Sends rows `first` to `last` - 1 in messages, and an empty message at the end.
@@ -53,8 +53,12 @@ void sendRows(Processes& processes, int to, const ExchangeMatrix& whole, std::si
 
 void takeRow(ByteReader& bytes, ExchangeMatrix& own) {
   const auto k = bytes.get<Index>();
-  const std::vector<Index> positions = bytes.getArray<Index>();
-  const std::vector<double> factors = bytes.getArray<double>();
+  std::vector<Index> positions{k};
+  std::vector<double> factors{bytes.get<double>()};
+  takeRuns(bytes, own.precision(), own.size(), [&](std::size_t offset, double value) {
+    positions.push_back(Index(k + 1 + offset));
+    factors.push_back(value);
+  });
   own.setUpperRow(k, positions, factors);
 }
 
@@ -94,6 +98,25 @@ ExchangeMatrix receiveRows(Processes& processes) {
     const Processes::Message message = processes.receive(0);
     if (message.bytes.empty()) return own;
     for (ByteReader bytes(message.bytes); bytes.left() > 0;) takeRow(bytes, own);
+  }
+}
+
+void evenOut(Processes& processes, ExchangeMatrix& own, const WhileWaiting& waiting) {
+  const RowOwners owners = findOwners(processes, own, waiting);
+  const std::vector<RowMove> moves = evenMoves(owners, processes.size());
+  if (moves.empty()) return;
+  std::vector<ByteWriter> sent(std::size_t(processes.size()));
+  for (const RowMove& move : moves) {
+    for (std::size_t k = move.first; move.from == processes.rank() && k < move.last; ++k) {
+      if (owners.owner[k] != move.from) continue;
+      putRow(own, k, sent[std::size_t(move.to)]);
+      own.setUpperRow(k, {});
+    }
+  }
+  std::vector<std::vector<std::byte>> messages;
+  for (ByteWriter& rows : sent) messages.push_back(rows.take());
+  for (const std::vector<std::byte>& rows : processes.exchange(std::move(messages), waiting)) {
+    for (ByteReader bytes(rows); bytes.left() > 0;) takeRow(bytes, own);
   }
 }
 

@@ -1,4 +1,4 @@
-// Deals the rows of a matrix of one process out to all processes.
+// Deals the rows of a matrix out to processes.
 #pragma once
 
 #include "base/processes.h"
@@ -14,5 +14,9 @@ ExchangeMatrix dealRows(Processes& processes, const ExchangeMatrix& whole,
 
 /// The other processes call this. Returns their share.
 ExchangeMatrix receiveRows(Processes& processes);
+
+/// Called by all processes, for rows in the symmetric form that they made themselves. Those that
+/// have more than their share of the work of a product send rows to those that have less.
+void evenOut(Processes& processes, ExchangeMatrix& own, const WhileWaiting& waiting);
 
 }  // namespace radiosity

@@ -53,22 +53,6 @@ std::vector<double> sizesOf(const ExchangeMatrix& own) {
   return {double(own.bytes()), double(own.denseRows())};
 }
 
-RowOwners findOwners(Processes& processes, const ExchangeMatrix& own, const WhileWaiting& waiting) {
-  RowOwners owners;
-  if (!own.isSymmetric()) return owners;
-  const std::size_t n = own.size();
-  std::vector<double> work(2 * n, 0.0);
-  for (std::size_t k = 0; k < n; ++k) {
-    work[k] = double(workOf(own.upperRuns(k)));
-    if (work[k] > 0) work[n + k] = processes.rank() + 1;
-  }
-  processes.sum(work, waiting);
-  processes.broadcastArray(work, waiting);
-  owners.work.assign(work.begin(), work.begin() + std::ptrdiff_t(n));
-  for (std::size_t k = 0; k < n; ++k) owners.owner.push_back(int(work[n + k]) - 1);
-  return owners;
-}
-
 /// `dense`: of zeros.
 void fillColumns(const ExchangeMatrix& own, std::size_t first, std::size_t last,
                  std::span<double> dense) {

@@ -10,16 +10,10 @@
 
 #include "base/processes.h"
 #include "matrix/dealt_blocks.h"
+#include "matrix/row_owners.h"
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
-
-/// Symmetric form: the work of each row and the process that has it.
-struct RowOwners {
-  static constexpr int kNobody = -1;
-  std::vector<std::size_t> work;
-  std::vector<int> owner;  ///< kNobody if nothing is stored after the diagonal
-};
 
 /// Process 0's side. All functions wait for the others; `waiting` is called meanwhile.
 class SharedRows {

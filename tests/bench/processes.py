@@ -12,6 +12,7 @@ process.
   --repeat K     default 3
 """
 import argparse
+import csv
 import json
 import math
 import os
@@ -20,7 +21,6 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -29,16 +29,17 @@ ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_R
 
 def run(options, processes, patches, folder):
     """Seconds of the two stages, and the radiosities."""
-    report, results = folder / "report.json", folder / "results.h5"
-    results.unlink(missing_ok=True)
+    report, table = folder / "report.json", folder / "radiosities.csv"
     subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(processes),
                     options.program, "solve", options.scene, "--patches", str(patches), "--method",
-                    "exact", "--solver", "petsc", "--threads", "1", "--quiet", "-o", str(results),
+                    "exact", "--solver", "petsc", "--threads", "1", "--quiet", "-o", str(table),
                     "--report", str(report)], check=True, env=ENVIRONMENT)
     figures = json.loads(report.read_text())
     stages = {name: stage["seconds"] for name, stage in figures["stages"].items() if "seconds" in stage}
-    with h5py.File(results) as file:
-        return stages["form_factors"], stages["solution"], file["solution/radiosity"][()]
+    with open(table) as lines:
+        radiosities = [[float(row[f"radiosity_{band}"]) for band in (1, 2, 3)]
+                       for row in csv.DictReader(lines)]
+    return stages["form_factors"], stages["solution"], np.array(radiosities)
 
 
 def quickest(options, sizes, folder):

@@ -14,6 +14,7 @@
 #include "formfactor/exact/assembly/task_journal.h"
 #include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
+#include "matrix/dealt_rows.h"
 #include "matrix/shared_rows.h"
 #include "mesh/clusters/canonical_order.h"
 #include "mesh/patches/enclosures.h"
@@ -221,10 +222,11 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   if (processes != nullptr) processes->broadcastValue(recheck_every);
   const RowSums sums = fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks,
                                 journal, processes, progress);
-  result.matrix = processes == nullptr
-                      ? std::move(rows.matrix)
-                      : ExchangeMatrix::shared(std::make_shared<SharedRows>(
-                            *processes, std::move(rows.matrix), [&] { progress.check(); }));
+  const auto check = [&] { progress.check(); };
+  if (processes != nullptr) evenOut(*processes, rows.matrix, check);
+  result.matrix = processes == nullptr ? std::move(rows.matrix)
+                                       : ExchangeMatrix::shared(std::make_shared<SharedRows>(
+                                             *processes, std::move(rows.matrix), check));
   result.backs = std::move(rows.backs);
   result.sky.assign(n, 0.0);
   const Stopwatch finishing;
@@ -253,6 +255,7 @@ ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions
   processes.broadcastValue(recheck_every);
   fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks, journal, &processes,
            progress);
+  evenOut(processes, rows.matrix, {});
   return std::move(rows.matrix);
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "matrix/run_row.h"
+#include "matrix/run_bytes.h"
 #include "matrix/uncertain_row.h"
 
 namespace radiosity {
@@ -17,30 +17,6 @@ struct TaskJournal::Row {
 };
 
 namespace {
-
-template <class Value>
-void putRuns(const std::pmr::vector<Run>& runs, const std::pmr::vector<Value>& values,
-             ByteWriter& bytes) {
-  std::size_t stored = 0;
-  for (const Run run : runs) stored += run.count;
-  bytes.putArray(std::span(runs));
-  bytes.putArray(std::span(values).first(stored));  // without the zeros that kernels read beyond
-}
-
-/// Calls visit(offset, value) for every stored value with an offset below `end`.
-template <class Value, class Visit>
-void takeRuns(ByteReader& bytes, std::size_t end, const Visit& visit) {
-  const auto runs = bytes.getArray<Run>();
-  const auto values = bytes.getArray<Value>();
-  std::size_t offset = 0;
-  std::size_t next = 0;
-  for (const Run run : runs) {
-    offset += run.skip;
-    for (std::size_t m = 0; m < run.count && next < values.size() && offset < end; ++m) {
-      visit(offset++, values[next++]);
-    }
-  }
-}
 
 /// Counts that are added up over tasks.
 void putCounts(const RowSums& sums, ByteWriter& bytes) {
@@ -120,11 +96,7 @@ void TaskJournal::keep(std::size_t task, const RowSums& sums) const {
 void TaskJournal::putRow(std::size_t rank, ByteWriter& bytes) const {
   const RunRow& row = context_.matrix.upperRuns(rank);
   bytes.put(context_.matrix.diagonal(rank));
-  if (context_.matrix.precision() == Precision::single_precision) {
-    putRuns(row.runs, row.floats, bytes);
-  } else {
-    putRuns(row.runs, row.doubles, bytes);
-  }
+  putRuns(row, context_.matrix.precision(), bytes);
   if (context_.uncertain != nullptr) {
     const UncertainEntries::Row& errors = context_.uncertain->row(rank);
     putRuns(errors.runs, errors.codes, bytes);
@@ -140,11 +112,7 @@ TaskJournal::Row TaskJournal::takeRow(std::size_t rank, ByteReader& bytes) const
   row.factors[0] = bytes.get<double>();
   const std::size_t later = row.factors.size() - 1;
   const auto put = [&](std::size_t offset, double value) { row.factors[1 + offset] = value; };
-  if (context_.matrix.precision() == Precision::single_precision) {
-    takeRuns<float>(bytes, later, put);
-  } else {
-    takeRuns<double>(bytes, later, put);
-  }
+  takeRuns(bytes, context_.matrix.precision(), later, put);
   if (context_.uncertain != nullptr) {
     takeRuns<std::uint8_t>(bytes, later, [&](std::size_t offset, std::uint8_t code) {
       row.later.push_back(Index(rank + 1 + offset));
