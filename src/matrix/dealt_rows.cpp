@@ -114,6 +114,7 @@ void evenOut(Processes& processes, ExchangeMatrix& own, const WhileWaiting& wait
     }
   }
   std::vector<std::vector<std::byte>> messages;
+  messages.reserve(sent.size());
   for (ByteWriter& rows : sent) messages.push_back(rows.take());
   for (const std::vector<std::byte>& rows : processes.exchange(std::move(messages), waiting)) {
     for (ByteReader bytes(rows); bytes.left() > 0;) takeRow(bytes, own);
