@@ -28,9 +28,9 @@ struct RowMove {
   int to;
 };
 
-/// Moves after which no process has more than 1% above its share of the work, but for the work of a
-/// row. As few stretches as that takes, since rows that lie together are walked along together.
-/// Empty if all have their shares already.
+/// Moves after which no process has more than its share of the work by more than a row or two. They
+/// take long stretches, since rows that lie together are walked along together. Empty if no process
+/// has more than 1% above its share.
 std::vector<RowMove> evenMoves(const RowOwners& owners, int processes);
 
 }  // namespace radiosity

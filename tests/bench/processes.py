@@ -3,8 +3,8 @@
 core: processes.py PROGRAM [options]
 
 Strong scaling: the same patches for 1, 2, ... processes. Weak: as many pairs of patches a process.
-Every run is repeated and the quickest counts (runs take turns); radiosities must be those of one
-process.
+Every run is repeated, in turns. Seconds are medians; efficiency is the median of the ratios to one
+process in the same turn. Radiosities must be those of one process.
 
   --most P       processes, 1 and doubled up to this; default 2
   --patches N    of one process; default 4000
@@ -42,16 +42,16 @@ def run(options, processes, patches, folder):
     return stages["form_factors"], stages["solution"], np.array(radiosities)
 
 
-def quickest(options, sizes, folder):
-    """(processes, patches) -> the quickest stages of its runs, and radiosities. The sizes take turns,
-    since a machine that others use may be a third slower for minutes."""
-    found = {}
+def measured(options, sizes, folder):
+    """(processes, patches) -> the stages of its runs, turn by turn, and radiosities. The sizes take
+    turns, since a machine that others use may be a third slower for minutes: sizes are compared
+    within a turn."""
+    turns, radiosities = {size: [] for size in sizes}, {}
     for _ in range(options.repeat):
         for size in sizes:
-            form_factors, solution, radiosities = run(options, *size, folder)
-            before = found.get(size, (math.inf, math.inf))
-            found[size] = (min(before[0], form_factors), min(before[1], solution), radiosities)
-    return found
+            *stages, radiosities[size] = run(options, *size, folder)
+            turns[size].append(stages)
+    return {size: (np.array(turns[size]), radiosities[size]) for size in sizes}
 
 
 def main():
@@ -66,21 +66,22 @@ def main():
     sizes = {"strong": [(p, options.patches) for p in counts],
              "weak": [(p, round(options.patches * math.sqrt(p))) for p in counts[1:]]}
     with tempfile.TemporaryDirectory() as name:
-        found = quickest(options, sizes["strong"] + sizes["weak"], pathlib.Path(name))
-    alone = found[sizes["strong"][0]]
+        found = measured(options, sizes["strong"] + sizes["weak"], pathlib.Path(name))
+    alone, radiosities_alone = found[sizes["strong"][0]]
     print("scaling | processes | patches | form factors, s | efficiency | solution, s | efficiency")
     print("---|---|---|---|---|---|---")
     for kind in ("strong", "weak"):
         for size in sizes[kind]:
-            form_factors, solution, radiosities = found[size]
+            turns, radiosities = found[size]
             share = size[0] if kind == "strong" else 1
             if kind == "strong":
-                error = np.abs(radiosities - alone[2]).max() / np.abs(alone[2]).max()
+                error = np.abs(radiosities - radiosities_alone).max() / radiosities_alone.max()
                 if error > 1e-5:
                     sys.exit(f"{size[0]} processes: radiosities differ by {error:.1e}")
-            print(f"{kind} | {size[0]} | {len(radiosities)} | "
-                  f"{form_factors:.2f} | {alone[0] / form_factors / share:.2f} | "
-                  f"{solution:.2f} | {alone[1] / solution / share:.2f}")
+            seconds = np.median(turns, axis=0)
+            efficiency = np.median(alone / turns / share, axis=0)
+            print(f"{kind} | {size[0]} | {len(radiosities)} | {seconds[0]:.2f} | "
+                  f"{efficiency[0]:.2f} | {seconds[1]:.2f} | {efficiency[1]:.2f}")
 
 
 if __name__ == "__main__":
