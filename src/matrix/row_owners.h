@@ -28,9 +28,10 @@ struct RowMove {
   int to;
 };
 
-/// Moves after which no process has more than its share of the work by more than a row or two. They
-/// take long stretches, since rows that lie together are walked along together. Empty if no process
-/// has more than 1% above its share.
+/// Moves after which a process has more than its share of the work by no more than rows that would
+/// give their receiver more than its own, or leave it less. They take long stretches, since rows
+/// that lie together are walked along together. Empty if no process has more than 1% above its
+/// share.
 std::vector<RowMove> evenMoves(const RowOwners& owners, int processes);
 
 }  // namespace radiosity

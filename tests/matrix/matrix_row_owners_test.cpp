@@ -43,6 +43,7 @@ RowOwners triangle(std::size_t rows, const Owner& owner) {
   return owners;
 }
 
+/// A process may keep what the others cannot take: each of them lacks less than the longest row.
 void expectEven(const RowOwners& owners, int processes) {
   const std::vector<double> load = loadsOf(owners, processes);
   double share = 0;
@@ -51,7 +52,7 @@ void expectEven(const RowOwners& owners, int processes) {
   EXPECT_LE(*std::max_element(load.begin(), load.end()), share + processes * row);
 }
 
-TEST(MatrixRowOwners, SharesBecomeEvenToARow) {
+TEST(MatrixRowOwners, SharesBecomeEvenToARowOfEachProcess) {
   for (const int processes : {2, 4, 7}) {
     // The first process has every third block beside its own.
     const RowOwners owners = triangle(4000, [&](std::size_t block) {
