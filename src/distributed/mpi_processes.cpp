@@ -18,6 +18,11 @@ constexpr int kBytes = 2;   // tag of its bytes
 /// MPI counts in ints, so longer messages are sent in parts.
 constexpr std::size_t kMostBytes = std::size_t(1) << 30;
 
+/// The most bytes that a collective call sends in one step. A longer one takes many steps, and in
+/// each a process that sleeps keeps the others waiting, so all meet before it and it does not
+/// sleep.
+constexpr std::size_t kOneStep = std::size_t(4) << 10;
+
 /// Waits without taking a core from processes that compute. The first waits are short, for answers
 /// that come at once.
 class Patience {
@@ -107,21 +112,35 @@ Processes::Message MpiProcesses::receive(int from, const WhileWaiting& waiting) 
   return message;
 }
 
+void MpiProcesses::meet(const WhileWaiting& waiting) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibarrier(MPI_COMM_WORLD, &request);
+  wait(request, waiting);
+}
+
 void MpiProcesses::broadcast(std::span<std::byte> bytes, const WhileWaiting& waiting) {
+  if (bytes.size() <= kOneStep) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Ibcast(bytes.data(), int(bytes.size()), MPI_BYTE, 0, MPI_COMM_WORLD, &request);
+    wait(request, waiting);
+    return;
+  }
+  meet(waiting);
   inParts(bytes.size(), kMostBytes, [&](std::size_t at, int count) {
     MPI_Request request = MPI_REQUEST_NULL;
     MPI_Ibcast(bytes.data() + at, count, MPI_BYTE, 0, MPI_COMM_WORLD, &request);
-    wait(request, waiting);
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
   });
 }
 
 void MpiProcesses::sum(std::span<double> values, const WhileWaiting& waiting) {
+  meet(waiting);
   inParts(values.size(), kMostBytes / sizeof(double), [&](std::size_t at, int count) {
     MPI_Request request = MPI_REQUEST_NULL;
     double* mine = values.data() + at;
     MPI_Ireduce(rank_ == 0 ? MPI_IN_PLACE : mine, rank_ == 0 ? mine : nullptr, count, MPI_DOUBLE,
                 MPI_SUM, 0, MPI_COMM_WORLD, &request);
-    wait(request, waiting);
+    MPI_Wait(&request, MPI_STATUS_IGNORE);
   });
 }
 

@@ -27,6 +27,8 @@ class MpiProcesses final : public Processes {
 
  private:
   static void wait(MPI_Request& request, const WhileWaiting& waiting);
+  /// Returns when all processes have called it.
+  static void meet(const WhileWaiting& waiting);
   int rank_ = 0;
   int size_ = 1;
 };

@@ -1,8 +1,11 @@
 #include "matrix/ordered_sums.h"
 
+#include <algorithm>
 #include <span>
+#include <utility>
 
 #include "base/byte_stream.h"
+#include "base/parallel.h"
 #include "matrix/own_rows.h"
 #include "matrix/triangle_kernels.h"
 #include "matrix/triangle_pass.h"
@@ -11,33 +14,106 @@ namespace radiosity {
 
 namespace {
 
-/// The sums of one chunk of rows. One process has them at a time.
-class PassedSums {
- public:
-  PassedSums(Processes& processes, std::size_t places, const WhileWaiting& waiting)
-      : processes_(processes), waiting_(waiting), sums_(places, 0.0) {}
+/// Rows of a chunk that follow one another and are one process's.
+struct Stretch {
+  std::size_t first;
+  std::size_t last;
+  int owner;
+};
 
-  /// Sends the sums to process `next` from the process that has them.
-  void passTo(int next) {
-    const int before = std::exchange(holder_, next);
-    if (before == RowOwners::kNobody || before == next) return;
-    if (before == processes_.rank()) {
-      ByteWriter bytes;
-      bytes.putArray(std::span<const double>(sums_));
-      processes_.send(next, bytes.bytes());
-    } else if (next == processes_.rank()) {
-      const Processes::Message message = processes_.receive(before, waiting_);
-      ByteReader bytes(message.bytes);
-      sums_ = bytes.getArray<double>();
+/// Stretches of rows [first, last), without rows that hold nothing.
+std::vector<Stretch> stretchesOf(const RowOwners& owners, std::size_t first, std::size_t last) {
+  std::vector<Stretch> stretches;
+  for (std::size_t k = first; k < last; ++k) {
+    const int owner = owners.owner[k];
+    if (owner == RowOwners::kNobody) continue;
+    if (stretches.empty() || stretches.back().owner != owner) stretches.push_back({k, k, owner});
+    stretches.back().last = k + 1;
+  }
+  return stretches;
+}
+
+/// The chunks of a TrianglePass whose stretches are added by their owners. Chunks do not depend on
+/// each other, so all owners work at once: on the first stretch of every chunk, then on the second,
+/// and so on.
+class ChunkedSums {
+ public:
+  ChunkedSums(Processes& processes, const ExchangeMatrix& own, const RowOwners& owners,
+              const TrianglePass& pass)
+      : processes_(processes), own_(own), ones_(own.size() + kOverrun, 1.0) {
+    for (std::size_t c = 0; c + 1 < pass.starts().size(); ++c) {
+      chunks_.push_back(
+          {pass.starts()[c], stretchesOf(owners, pass.starts()[c], pass.starts()[c + 1]), {}});
+      steps_ = std::max(steps_, chunks_.back().stretches.size());
     }
   }
-  std::span<double> values() { return sums_; }
+
+  /// Adds the sums of own rows to `gathered`. Process 0 gets in `handed` what rows hand on to
+  /// later ones.
+  void run(std::span<double> gathered, std::span<double> handed, const WhileWaiting& waiting) {
+    for (std::size_t step = 0; step < steps_; ++step) {
+      parallelFor(chunks_.size(), 1,
+                  [&](std::size_t c) { addStretch(chunks_[c], step, gathered); });
+      passOn(step, waiting);
+    }
+    for (const Chunk& chunk : chunks_) {  // filled in process 0 alone
+      for (std::size_t k = 0; k < chunk.sums.size() && chunk.begin + k < handed.size(); ++k) {
+        handed[chunk.begin + k] += chunk.sums[k];
+      }
+    }
+  }
 
  private:
+  struct Chunk {
+    std::size_t begin;
+    std::vector<Stretch> stretches;
+    /// Handed on to rows from `begin` on, where this process adds or has added the last stretch.
+    std::vector<double> sums;
+  };
+
+  void addStretch(Chunk& chunk, std::size_t step, std::span<double> gathered) const {
+    if (step >= chunk.stretches.size()) return;
+    const auto& [first, last, owner] = chunk.stretches[step];
+    if (owner != processes_.rank()) return;
+    if (step == 0) chunk.sums.assign(own_.size() - chunk.begin + kOverrun, 0.0);
+    for (std::size_t k = first; k < last; ++k) {
+      gathered[k] = sumRow(own_, k, chunk.begin, ones_, chunk.sums);
+    }
+  }
+
+  /// The process that adds a chunk's next stretch after `step`, or takes all sums: 0.
+  static int nextOwner(const Chunk& chunk, std::size_t step) {
+    return step + 1 < chunk.stretches.size() ? chunk.stretches[step + 1].owner : 0;
+  }
+
+  /// Sends the sums of chunks that had a stretch in this step to where they are added to next.
+  void passOn(std::size_t step, const WhileWaiting& waiting) {
+    const int rank = processes_.rank();
+    std::vector<ByteWriter> messages(std::size_t(processes_.size()));
+    for (Chunk& chunk : chunks_) {
+      if (step >= chunk.stretches.size() || chunk.stretches[step].owner != rank) continue;
+      const int next = nextOwner(chunk, step);
+      if (next == rank) continue;
+      messages[std::size_t(next)].putArray(std::span<const double>(chunk.sums));
+      chunk.sums = {};
+    }
+    std::vector<std::vector<std::byte>> bytes;
+    for (ByteWriter& message : messages) bytes.push_back(message.take());
+    const std::vector<std::vector<std::byte>> received =
+        processes_.exchange(std::move(bytes), waiting);
+    std::vector<ByteReader> from(received.begin(), received.end());
+    for (Chunk& chunk : chunks_) {
+      if (step >= chunk.stretches.size() || nextOwner(chunk, step) != rank) continue;
+      const int before = chunk.stretches[step].owner;
+      if (before != rank) chunk.sums = from[std::size_t(before)].getArray<double>();
+    }
+  }
+
   Processes& processes_;
-  const WhileWaiting& waiting_;
-  std::vector<double> sums_;
-  int holder_ = RowOwners::kNobody;
+  const ExchangeMatrix& own_;
+  std::vector<double> ones_;
+  std::vector<Chunk> chunks_;
+  std::size_t steps_ = 0;
 };
 
 }  // namespace
@@ -52,22 +128,10 @@ std::vector<double> orderedRowSums(Processes& processes, const ExchangeMatrix& o
     return first_process ? sums : std::vector<double>();
   }
   const TrianglePass pass(n, kSums, [&](std::size_t k) { return owners.work[k]; });
-  const std::vector<double> ones(n + kOverrun, 1.0);
   std::vector<double> gathered(n, 0.0);
-  std::vector<double> handed(n, 0.0);
+  std::vector<double> handed(first_process ? n : 0, 0.0);
   for (std::size_t k = 0; k < n; ++k) gathered[k] = own.diagonal(k);
-  for (std::size_t c = 0; c + 1 < pass.starts().size(); ++c) {
-    const std::size_t begin = pass.starts()[c];
-    PassedSums sums(processes, n - begin + kOverrun, waiting);
-    for (std::size_t k = begin; k < pass.starts()[c + 1]; ++k) {
-      if (owners.owner[k] == RowOwners::kNobody) continue;
-      sums.passTo(owners.owner[k]);
-      if (owners.owner[k] != processes.rank()) continue;
-      gathered[k] = sumRow(own, k, begin, ones, sums.values());
-    }
-    sums.passTo(0);
-    for (std::size_t k = begin; first_process && k < n; ++k) handed[k] += sums.values()[k - begin];
-  }
+  ChunkedSums(processes, own, owners, pass).run(gathered, handed, waiting);
   processes.sum(gathered, waiting);
   if (!first_process) return {};
   std::vector<double> sums(n);
