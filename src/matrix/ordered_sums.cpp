@@ -98,6 +98,7 @@ class ChunkedSums {
       chunk.sums = {};
     }
     std::vector<std::vector<std::byte>> bytes;
+    bytes.reserve(messages.size());
     for (ByteWriter& message : messages) bytes.push_back(message.take());
     const std::vector<std::vector<std::byte>> received =
         processes_.exchange(std::move(bytes), waiting);

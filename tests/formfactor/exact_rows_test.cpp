@@ -22,7 +22,7 @@ FormFactors byRays(const PatchMesh& mesh, const std::vector<Index>& exact_rows, 
 }
 
 /// The share of some patches that each patch sees, over its true value: the largest difference, of
-/// patches that see a tenth of the mean or more.
+/// patches that see a hundredth of the mean or more.
 double worstShare(const FormFactors& found, const FormFactors& truth,
                   const std::vector<Index>& seen) {
   const std::size_t n = truth.matrix.size();
@@ -36,7 +36,7 @@ double worstShare(const FormFactors& found, const FormFactors& truth,
   double worst = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double is = sumOf(truth, i);
-    if (is >= 0.1 * mean) worst = std::max(worst, std::abs(sumOf(found, i) / is - 1));
+    if (is >= 0.01 * mean) worst = std::max(worst, std::abs(sumOf(found, i) / is - 1));
   }
   return worst;
 }

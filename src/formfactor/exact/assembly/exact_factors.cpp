@@ -58,6 +58,7 @@ struct RowStore {
             kernels.occluded,
             progress,
             recheck_every,
+            {},
             matrix,
             enforces ? &uncertain : nullptr,
             backs,

@@ -162,6 +162,8 @@ std::size_t LeadingRows::bytes() const {
 }
 
 void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const {
+  std::vector<Index> receivers(mesh_.size());
+  for (Index i = 0; i < mesh_.size(); ++i) receivers[i] = mesh_.unknownOf(i);
   const RowContext context{scene_.elements,
                            scene_.order,
                            scene_.chunks,
@@ -169,7 +171,8 @@ void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress
                            kernels.unoccluded,
                            kernels.occluded,
                            progress,
-                           std::numeric_limits<std::size_t>::max(),  // none is evaluated again
+                           std::numeric_limits<std::size_t>::max(),  // none is rechecked
+                           receivers,
                            triangle.matrix,
                            &triangle.uncertain,
                            triangle.backs,

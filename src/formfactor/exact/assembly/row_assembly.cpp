@@ -2,13 +2,21 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
+#include <functional>
 #include <numeric>
+#include <unordered_map>
 
 #include "base/processor_clock.h"
 
 namespace radiosity {
 namespace {
+
+/// What a receiver gets is to be good to 5%. Those that get less than this share of the mean are
+/// dark: their errors count as if they got so much.
+constexpr double kAcceptedShare = 0.04;
+constexpr double kDark = 0.01;
 
 /// Adds the processor time of this thread from its making to its end to a sum.
 class ProcessorTime {
@@ -147,6 +155,7 @@ void RowAssembly::evaluateOccluded(RowSums& sums) {
   occluded_.resize(pairs.size());
   context_.occluded.evaluate(pairs, pairs_.occluder_list, occluded_, sums.occluded,
                              &context_.progress);
+  replaceUncertain();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto& [row, column, begin, end, unoccluded] = pairs[k];
     panel_[place(row, column)] = occluded_[k].exchange;
@@ -160,6 +169,53 @@ void RowAssembly::evaluateOccluded(RowSums& sums) {
     }
   }
   recheck(sums);
+}
+
+std::vector<std::size_t> RowAssembly::uncertainPairs() const {
+  const ElementSet& elements = context_.elements;
+  const std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
+  const double whole = std::accumulate(context_.order.area.begin(), context_.order.area.end(), 0.0);
+  struct Light {
+    double exchange = 0;
+    double mean = 0;    ///< the exchange if all surfaces got the same
+    double square = 0;  ///< of the error, without pairs that are evaluated again
+  };
+  std::unordered_map<Index, Light> lights;
+  const auto lightOf = [&](std::size_t k) -> Light& {
+    return lights[context_.receivers[elements.patch[pairs[k].column]]];
+  };
+  std::vector<std::size_t> by_error;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (pairs[k].column >= elements.patch_elements) continue;
+    Light& light = lightOf(k);
+    light.exchange += occluded_[k].exchange;
+    light.mean += elements.area[pairs[k].row] * elements.area[pairs[k].column] / whole;
+    light.square += occluded_[k].error * occluded_[k].error;
+    if (!occluded_[k].cut_short) by_error.push_back(k);
+  }
+  std::ranges::stable_sort(by_error, std::ranges::greater(),
+                           [&](std::size_t k) { return occluded_[k].error; });
+  std::vector<std::size_t> uncertain;
+  for (const std::size_t k : by_error) {
+    Light& light = lightOf(k);
+    const double accepted = kAcceptedShare * std::max(light.exchange, kDark * light.mean);
+    if (light.square <= accepted * accepted) continue;
+    light.square -= occluded_[k].error * occluded_[k].error;
+    uncertain.push_back(k);
+  }
+  return uncertain;
+}
+
+void RowAssembly::replaceUncertain() {
+  if (context_.receivers.empty()) return;
+  const std::vector<std::size_t> which = uncertainPairs();
+  if (which.empty()) return;
+  std::vector<OccludedPair> pairs;
+  pairs.reserve(which.size());
+  for (const std::size_t k : which) pairs.push_back(pairs_.occluded_pairs[k]);
+  std::vector<OccludedExchange> closer(which.size());
+  context_.occluded.evaluateCloser(pairs, pairs_.occluder_list, closer, &context_.progress);
+  for (std::size_t m = 0; m < which.size(); ++m) occluded_[which[m]] = closer[m];
 }
 
 void RowAssembly::recheck(RowSums& sums) const {

@@ -54,6 +54,9 @@ struct RowContext {
   const OccludedKernel& occluded;
   const Progress& progress;
   std::size_t recheck_every;  ///< about one occluded pair in this many is evaluated again
+  /// By patch, the unknown that it belongs to, if what each unknown gets from a task's rows is to
+  /// be good to some percent itself, and not just good beside the whole row; else empty.
+  std::span<const Index> receivers;
   ExchangeMatrix& matrix;
   UncertainEntries* uncertain;  ///< takes occluded pairs and their errors; may be null
   std::vector<double>& backs;
@@ -88,6 +91,9 @@ class RowAssembly {
                           RowSums& sums);
   void dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums);
   void evaluateOccluded(RowSums& sums);
+  /// Evaluates pairs to receivers more closely that get too uncertain an exchange.
+  void replaceUncertain();
+  std::vector<std::size_t> uncertainPairs() const;
   void recheck(RowSums& sums) const;
   void storeUncertain(ElementRange rows);
   void storeUncertainRow(std::size_t rank, std::span<Uncertain> entries);
