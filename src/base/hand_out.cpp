@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "base/byte_stream.h"
 
@@ -62,7 +63,9 @@ class OwnShare {
  private:
   void run() {
     try {
-      for (std::size_t block = next_++; block < work_.blocks; block = next_++) {
+      for (std::size_t taken = 0; taken < work_.most_a_process; ++taken) {
+        const std::size_t block = next_++;
+        if (block >= work_.blocks) break;
         std::vector<std::byte> bytes = work_.run(block);
         const std::lock_guard lock(mutex_);
         done_.emplace_back(block, std::move(bytes));
@@ -81,23 +84,48 @@ class OwnShare {
   std::thread thread_;
 };
 
-/// Takes the result of another process and gives it the next block. True if it had done a block.
-bool serve(Processes& processes, const BlockWork& work, std::atomic<std::size_t>& next,
-           int& working) {
-  const Processes::Message message = processes.receive(Processes::kAny);
-  ByteReader reader(message.bytes);
-  const auto done = reader.get<std::size_t>();
-  const std::vector<std::byte> bytes = reader.getArray<std::byte>();
-  std::size_t block = next++;
-  if (block >= work.blocks) {
-    block = kNoBlock;
-    --working;
+/// Hands blocks to the other processes.
+class OtherShares {
+ public:
+  OtherShares(Processes& processes, const BlockWork& work, std::atomic<std::size_t>& next)
+      : processes_(processes),
+        work_(work),
+        next_(next),
+        handed_(std::size_t(processes.size()), 0),
+        working_(processes.size() - 1) {}
+
+  bool working() const { return working_ > 0; }
+
+  /// Takes the result of a process and gives it the next block. True if it had done a block.
+  bool serve() {
+    const Processes::Message message = processes_.receive(Processes::kAny);
+    ByteReader reader(message.bytes);
+    const auto done = reader.get<std::size_t>();
+    const std::vector<std::byte> bytes = reader.getArray<std::byte>();
+    const std::size_t block = nextFor(message.from);
+    if (block == kNoBlock) --working_;
+    processes_.send(message.from, std::as_bytes(std::span(&block, 1)));
+    if (done == kNoBlock) return false;
+    work_.take(done, bytes, message.from);
+    return true;
   }
-  processes.send(message.from, std::as_bytes(std::span(&block, 1)));
-  if (done == kNoBlock) return false;
-  work.take(done, bytes, message.from);
-  return true;
-}
+
+ private:
+  std::size_t nextFor(int process) {
+    std::size_t& handed = handed_[std::size_t(process)];
+    if (handed == work_.most_a_process) return kNoBlock;
+    const std::size_t block = next_++;
+    if (block >= work_.blocks) return kNoBlock;
+    ++handed;
+    return block;
+  }
+
+  Processes& processes_;
+  const BlockWork& work_;
+  std::atomic<std::size_t>& next_;
+  std::vector<std::size_t> handed_;  // blocks, by process
+  int working_;
+};
 
 }  // namespace
 
@@ -106,12 +134,12 @@ void handOut(Processes& processes, const BlockWork& work, Progress& progress) {
   constexpr std::chrono::milliseconds kBetweenLooks{1};
   std::atomic<std::size_t> next{0};
   OwnShare own(work, next);
-  int working = processes.size() - 1;
-  for (std::size_t done = 0; done < work.blocks || working > 0;) {
+  OtherShares others(processes, work, next);
+  for (std::size_t done = 0; done < work.blocks || others.working();) {
     progress.check();
     done += own.collect();
     if (processes.hasMessage()) {
-      done += serve(processes, work, next, working) ? 1 : 0;
+      done += others.serve() ? 1 : 0;
     } else {
       std::this_thread::sleep_for(kBetweenLooks);
     }

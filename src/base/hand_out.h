@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace radiosity {
 
 struct BlockWork {
   std::size_t blocks = 0;
+  /// A process gets at most so many, which bounds the memory of their results.
+  std::size_t most_a_process = std::numeric_limits<std::size_t>::max();
   /// Computes a block and returns its result for process 0. Called by one thread of each process.
   std::function<std::vector<std::byte>(std::size_t block)> run;
   /// Takes the result of a block and the process that computed it. Called in process 0, on the
@@ -21,7 +24,7 @@ struct BlockWork {
 };
 
 /// Hands out all blocks in order, one at a time, so that quick processes get more; process 0 works
-/// as well. All processes must call it. Rethrows exceptions of run() and take() in process 0;
+/// as well. All processes must call it; the most that they may get must be all blocks or more. Rethrows exceptions of run() and take() in process 0;
 /// throws Cancelled.
 void handOut(Processes& processes, const BlockWork& work, Progress& progress);
 

@@ -173,11 +173,13 @@ HemicubeRowCounts takeCounts(Workers& workers) {
 HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
                             Progress& progress) {
   constexpr std::size_t kBlocksAProcess = 32;
+  constexpr std::size_t kMostBlocksAProcess = 40;  // rows stay in the process that made them
   const std::size_t n = rows.made.size();
   FormFactors& result = rows.result;
   HemicubeRowCounts all;
   BlockWork work;
   work.blocks = std::min(n, kBlocksAProcess * std::size_t(processes.size()));
+  work.most_a_process = kMostBlocksAProcess;
   const auto rangeOf = [&](std::size_t block) {
     return RowRange{block * n / work.blocks, (block + 1) * n / work.blocks};
   };
