@@ -115,14 +115,6 @@ void OccludedKernel::evaluateStrictly(std::span<const OccludedPair> pairs,
             uncounted, progress});
 }
 
-void OccludedKernel::evaluateCloser(std::span<const OccludedPair> pairs,
-                                    std::span<const Index> occluder_list,
-                                    std::span<OccludedExchange> out,
-                                    const Progress* progress) const {
-  OccludedCounts uncounted;
-  evaluate({kStricter * tolerance_, pairs, occluder_list, out, uncounted, progress});
-}
-
 void OccludedKernel::evaluate(const Batch& batch) const {
   batch.counts.pairs += batch.pairs.size();
   if (batch.tolerance >= kSinglePrecision) {

@@ -77,10 +77,6 @@ class OccludedKernel {
   void evaluateStrictly(std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
                         std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
 
-  /// The same to kStricter times the tolerance, in double precision only if that needs it.
-  void evaluateCloser(std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
-                      std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
-
  private:
   /// Some pairs, and the place for their results.
   struct Batch {
