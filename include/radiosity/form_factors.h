@@ -90,7 +90,9 @@ struct FormFactorOptions {
   /// Rays: unknowns (patches, or clusters if there are any), ascending, whose exchange with all
   /// others is exact: those that emit (emittingUnknowns()), since all other light comes from them.
   /// They are left to rays, and the report says so, if exact rows would take more than half as long
-  /// as all rays and more than some seconds, or if they have more than a million pairs.
+  /// as all rays and more than some seconds, or if they have more than a million pairs. Exact: what
+  /// other unknowns get from these is good to 5% itself where it is 1% of the mean or more, if they
+  /// have a million pairs at most.
   std::vector<Index> exact_rows;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   /// A folder on a disk. Rows that do not fit within memory_limit go into an unnamed file there

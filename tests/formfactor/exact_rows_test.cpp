@@ -69,6 +69,19 @@ TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
   }
 }
 
+TEST_P(ExactRows, OfTheExactMethodGiveDimReceiversTheirLight) {
+  const Scene scene = test::dataScene(GetParam());
+  const PatchMesh mesh = test::meshOf(scene, 300);
+  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-5));
+  FormFactorOptions options = test::exactly(1e-3);
+  const FormFactors beside_rows = test::computed(mesh, options);
+  options.exact_rows = emitters;
+  const FormFactors itself = test::computed(mesh, options);
+  EXPECT_GT(worstShare(beside_rows, truth, emitters), 0.05);
+  EXPECT_LT(worstShare(itself, truth, emitters), 0.05);
+}
+
 TEST_P(ExactRows, KeepClosureAndReciprocity) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 300);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/processor_clock.h"
 #include "formfactor/closed_scene.h"
@@ -29,6 +30,9 @@ constexpr double kRecheckShare = 1.0 / 256;
 /// more: fewer pairs hold the errors that rules miss there, and pairs cost more to begin with.
 constexpr double kRecheckLeast = 512;
 constexpr double kRecheckLeastTight = 1024;
+/// If emitters have more pairs than this, they are not a small part of the scene, and their pairs
+/// are evaluated as all others.
+constexpr std::size_t kMostEmitterPairs = 1'000'000;
 /// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
 constexpr double kCertainSky = 0.01;
 
@@ -47,7 +51,10 @@ struct RowStore {
         backs(mesh.size(), 0.0),
         seen_backs(mesh.size()),
         enforces(options.closure == ClosureMode::enforce),
-        uncertain(enforces ? mesh.size() : 0, scratch) {}
+        uncertain(enforces ? mesh.size() : 0, scratch) {
+    const std::size_t pairs = options.exact_rows.size() * mesh.unknowns();
+    if (pairs > 0 && pairs <= kMostEmitterPairs) emitters.emplace(mesh, options.exact_rows);
+  }
   RowContext context(const ExactScene& scene, const ExactKernels& kernels,
                      std::size_t recheck_every, const Progress& progress) {
     return {scene.elements,
@@ -58,7 +65,7 @@ struct RowStore {
             kernels.occluded,
             progress,
             recheck_every,
-            {},
+            emitters ? &*emitters : nullptr,
             matrix,
             enforces ? &uncertain : nullptr,
             backs,
@@ -70,6 +77,7 @@ struct RowStore {
   std::vector<std::vector<SeenBack>> seen_backs;
   bool enforces;
   UncertainEntries uncertain;
+  std::optional<Emitters> emitters;
 };
 
 /// Makes all rows, in parallel, or the share of this process. Sums are made in a tree that depends
@@ -220,7 +228,11 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   RowStore rows(mesh, scene, options, scratch);
   std::size_t recheck_every =
       recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact));
-  if (processes != nullptr) processes->broadcastValue(recheck_every);
+  if (processes != nullptr) {
+    processes->broadcastValue(recheck_every);
+    std::vector<Index> emitters = options.exact_rows;
+    processes->broadcastArray(emitters);
+  }
   const RowSums sums = fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks,
                                 journal, processes, progress);
   const auto check = [&] { progress.check(); };
@@ -251,9 +263,11 @@ ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions
                                   Processes& processes, Progress& progress, RowJournal* journal) {
   const ExactScene scene(mesh, progress);
   const ExactKernels kernels(scene, options);
-  RowStore rows(mesh, scene, options, nullptr);
   std::size_t recheck_every = 1;
   processes.broadcastValue(recheck_every);
+  FormFactorOptions with_emitters = options;
+  processes.broadcastArray(with_emitters.exact_rows);
+  RowStore rows(mesh, scene, with_emitters, nullptr);
   fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks, journal, &processes,
            progress);
   evenOut(processes, rows.matrix, {});

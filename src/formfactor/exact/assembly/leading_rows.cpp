@@ -162,8 +162,7 @@ std::size_t LeadingRows::bytes() const {
 }
 
 void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const {
-  std::vector<Index> receivers(mesh_.size());
-  for (Index i = 0; i < mesh_.size(); ++i) receivers[i] = mesh_.unknownOf(i);
+  const Emitters emitters(mesh_, wanted_);
   const RowContext context{scene_.elements,
                            scene_.order,
                            scene_.chunks,
@@ -172,7 +171,7 @@ void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress
                            kernels.occluded,
                            progress,
                            std::numeric_limits<std::size_t>::max(),  // none is rechecked
-                           receivers,
+                           &emitters,
                            triangle.matrix,
                            &triangle.uncertain,
                            triangle.backs,

@@ -62,6 +62,14 @@ PatchOrder::PatchOrder(const PatchMesh& mesh, const ElementSet& elements)
   }
 }
 
+Emitters::Emitters(const PatchMesh& mesh, std::span<const Index> unknowns)
+    : unknown(mesh.size()), emits(mesh.size()) {
+  for (Index i = 0; i < mesh.size(); ++i) {
+    unknown[i] = Index(mesh.unknownOf(i));
+    emits[i] = std::ranges::binary_search(unknowns, unknown[i]) ? 1 : 0;
+  }
+}
+
 RowSums& RowSums::operator+=(const RowSums& other) {
   error += other.error;
   visibility += other.visibility;
@@ -171,6 +179,15 @@ void RowAssembly::evaluateOccluded(RowSums& sums) {
   recheck(sums);
 }
 
+Index RowAssembly::receiverOf(const OccludedPair& pair) const {
+  const auto& [unknown, emits] = *context_.emitters;
+  if (pair.column >= context_.elements.patch_elements) return kNone;
+  const Index row = context_.elements.patch[pair.row];
+  const Index column = context_.elements.patch[pair.column];
+  if (emits[row] != 0) return unknown[column];
+  return emits[column] != 0 ? unknown[row] : kNone;
+}
+
 std::vector<std::size_t> RowAssembly::uncertainPairs() const {
   const ElementSet& elements = context_.elements;
   const std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
@@ -181,13 +198,11 @@ std::vector<std::size_t> RowAssembly::uncertainPairs() const {
     double square = 0;  ///< of the error, without pairs that are evaluated again
   };
   std::unordered_map<Index, Light> lights;
-  const auto lightOf = [&](std::size_t k) -> Light& {
-    return lights[context_.receivers[elements.patch[pairs[k].column]]];
-  };
   std::vector<std::size_t> by_error;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (pairs[k].column >= elements.patch_elements) continue;
-    Light& light = lightOf(k);
+    const Index receiver = receiverOf(pairs[k]);
+    if (receiver == kNone) continue;
+    Light& light = lights[receiver];
     light.exchange += occluded_[k].exchange;
     light.mean += elements.area[pairs[k].row] * elements.area[pairs[k].column] / whole;
     light.square += occluded_[k].error * occluded_[k].error;
@@ -197,7 +212,7 @@ std::vector<std::size_t> RowAssembly::uncertainPairs() const {
                            [&](std::size_t k) { return occluded_[k].error; });
   std::vector<std::size_t> uncertain;
   for (const std::size_t k : by_error) {
-    Light& light = lightOf(k);
+    Light& light = lights[receiverOf(pairs[k])];
     const double accepted = kAcceptedShare * std::max(light.exchange, kDark * light.mean);
     if (light.square <= accepted * accepted) continue;
     light.square -= occluded_[k].error * occluded_[k].error;
@@ -207,15 +222,15 @@ std::vector<std::size_t> RowAssembly::uncertainPairs() const {
 }
 
 void RowAssembly::replaceUncertain() {
-  if (context_.receivers.empty()) return;
+  if (context_.emitters == nullptr) return;
   const std::vector<std::size_t> which = uncertainPairs();
   if (which.empty()) return;
   std::vector<OccludedPair> pairs;
   pairs.reserve(which.size());
   for (const std::size_t k : which) pairs.push_back(pairs_.occluded_pairs[k]);
-  std::vector<OccludedExchange> closer(which.size());
-  context_.occluded.evaluateCloser(pairs, pairs_.occluder_list, closer, &context_.progress);
-  for (std::size_t m = 0; m < which.size(); ++m) occluded_[which[m]] = closer[m];
+  std::vector<OccludedExchange> strict(which.size());
+  context_.occluded.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
+  for (std::size_t m = 0; m < which.size(); ++m) occluded_[which[m]] = strict[m];
 }
 
 void RowAssembly::recheck(RowSums& sums) const {

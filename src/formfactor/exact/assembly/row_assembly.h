@@ -44,6 +44,14 @@ struct RowSums {
   double seconds_assembly = 0;
 };
 
+/// Unknowns that emit. What others get from them is to be good to some percent itself, and not just
+/// beside the whole row of the emitter.
+struct Emitters {
+  Emitters(const PatchMesh& mesh, std::span<const Index> unknowns);
+  std::vector<Index> unknown;       ///< N: that each patch belongs to
+  std::vector<std::uint8_t> emits;  ///< N
+};
+
 /// Inputs that all rows share, and the places that rows are stored in.
 struct RowContext {
   const ElementSet& elements;
@@ -54,9 +62,7 @@ struct RowContext {
   const OccludedKernel& occluded;
   const Progress& progress;
   std::size_t recheck_every;  ///< about one occluded pair in this many is evaluated again
-  /// By patch, the unknown that it belongs to, if what each unknown gets from a task's rows is to
-  /// be good to some percent itself, and not just good beside the whole row; else empty.
-  std::span<const Index> receivers;
+  const Emitters* emitters;   ///< may be null
   ExchangeMatrix& matrix;
   UncertainEntries* uncertain;  ///< takes occluded pairs and their errors; may be null
   std::vector<double>& backs;
@@ -91,9 +97,11 @@ class RowAssembly {
                           RowSums& sums);
   void dropPairsWithoutExchange(std::size_t first_pair, RowSums& sums);
   void evaluateOccluded(RowSums& sums);
-  /// Evaluates pairs to receivers more closely that get too uncertain an exchange.
+  /// Evaluates pairs of emitters and receivers strictly if what the receivers get is too uncertain.
   void replaceUncertain();
   std::vector<std::size_t> uncertainPairs() const;
+  /// The unknown that gets light by a pair; kNone if neither end emits.
+  Index receiverOf(const OccludedPair& pair) const;
   void recheck(RowSums& sums) const;
   void storeUncertain(ElementRange rows);
   void storeUncertainRow(std::size_t rank, std::span<Uncertain> entries);

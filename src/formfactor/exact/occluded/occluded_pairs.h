@@ -73,7 +73,7 @@ class OccludedKernel {
                 const Progress* progress = nullptr) const;
 
   /// The same in double precision and to a fraction of the tolerance (kStricter): the difference is
-  /// nearly all of the error. For rechecks.
+  /// nearly all of the error.
   void evaluateStrictly(std::span<const OccludedPair> pairs, std::span<const Index> occluder_list,
                         std::span<OccludedExchange> out, const Progress* progress = nullptr) const;
 
