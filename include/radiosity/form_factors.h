@@ -92,7 +92,7 @@ struct FormFactorOptions {
   /// They are left to rays, and the report says so, if exact rows would take more than half as long
   /// as all rays and more than some seconds, or if they have more than a million pairs. Exact: what
   /// other unknowns get from these is good to 5% itself where it is 1% of the mean or more, if they
-  /// have a million pairs at most.
+  /// have a million pairs at most. Neither if onlyForSources().
   std::vector<Index> exact_rows;
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   /// A folder on a disk. Rows that do not fit within memory_limit go into an unnamed file there
@@ -116,10 +116,13 @@ struct FormFactorOptions {
     if (sources_only) return kSourceTolerance;
     return by == FormFactorMethod::rays ? kRayTolerance : kExactTolerance;
   }
+  /// Whether form factors need to be good for sources alone. If a tolerance is given, they are
+  /// those for all uses.
+  bool onlyForSources() const { return sources_only && !tolerance; }
   /// Rays: the sky's part in the norms that errors are relative to: sqrt(sum_j F_ij^2 + (w
   /// F_sky)^2). Of sources, if no tolerance is given, it is kSourceSky: bodies that see little but
   /// the sky are lit by it, or bring little light. Otherwise 0.
-  double skyWeight() const { return sources_only && !tolerance ? kSourceSky : 0; }
+  double skyWeight() const { return onlyForSources() ? kSourceSky : 0; }
 };
 
 /// Counts of work done and skipped by the exact method. A pair is an unordered pair of elements

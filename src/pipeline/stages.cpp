@@ -151,10 +151,8 @@ FormFactorPlan Pipeline::planFactors() const {
   returnFreedMemory();
   if (options.memory_held == 0) options.memory_held = residentBytes() + kLoadedLater;
   const PatchMesh& patches = made(results_.mesh).mesh;
-  if (!options.sources_only) {
-    options.exact_rows = emittingUnknowns(
-        patches, results_.materials ? *results_.materials : patchMaterials(scene(), patches));
-  }
+  options.exact_rows = emittingUnknowns(
+      patches, results_.materials ? *results_.materials : patchMaterials(scene(), patches));
   std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
   const bool only_rays =
       processes_ != nullptr && patches.clusters && options.method == FormFactorMethod::automatic;

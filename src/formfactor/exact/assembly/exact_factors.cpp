@@ -42,18 +42,25 @@ std::size_t recheckEvery(double occluded_pairs, double tolerance) {
   return std::size_t(std::max(1.0, 1 / share));
 }
 
+/// The emitters whose light is to be good to some percent at each receiver.
+std::vector<Index> emittersOf(const FormFactorOptions& options, std::size_t unknowns) {
+  if (options.onlyForSources()) return {};
+  if (options.exact_rows.size() * unknowns > kMostEmitterPairs) return {};
+  return options.exact_rows;
+}
+
 /// The results that rows are stored into, and the inputs that they are made from.
 struct RowStore {
+  /// `emitting`: unknowns.
   RowStore(const PatchMesh& mesh, const ExactScene& scene, const FormFactorOptions& options,
-           const std::shared_ptr<ScratchMemory>& scratch)
+           std::span<const Index> emitting, const std::shared_ptr<ScratchMemory>& scratch)
       : matrix(ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision(),
                                          scratch)),
         backs(mesh.size(), 0.0),
         seen_backs(mesh.size()),
         enforces(options.closure == ClosureMode::enforce),
         uncertain(enforces ? mesh.size() : 0, scratch) {
-    const std::size_t pairs = options.exact_rows.size() * mesh.unknowns();
-    if (pairs > 0 && pairs <= kMostEmitterPairs) emitters.emplace(mesh, options.exact_rows);
+    if (!emitting.empty()) emitters.emplace(mesh, emitting);
   }
   RowContext context(const ExactScene& scene, const ExactKernels& kernels,
                      std::size_t recheck_every, const Progress& progress) {
@@ -225,14 +232,14 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   report.estimated_bytes = memory.bytes;
   const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(memory, options, n);
 
-  RowStore rows(mesh, scene, options, scratch);
+  std::vector<Index> emitting = emittersOf(options, mesh.unknowns());
   std::size_t recheck_every =
       recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact));
   if (processes != nullptr) {
     processes->broadcastValue(recheck_every);
-    std::vector<Index> emitters = options.exact_rows;
-    processes->broadcastArray(emitters);
+    processes->broadcastArray(emitting);
   }
+  RowStore rows(mesh, scene, options, emitting, scratch);
   const RowSums sums = fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks,
                                 journal, processes, progress);
   const auto check = [&] { progress.check(); };
@@ -265,9 +272,9 @@ ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions
   const ExactKernels kernels(scene, options);
   std::size_t recheck_every = 1;
   processes.broadcastValue(recheck_every);
-  FormFactorOptions with_emitters = options;
-  processes.broadcastArray(with_emitters.exact_rows);
-  RowStore rows(mesh, scene, with_emitters, nullptr);
+  std::vector<Index> emitting;
+  processes.broadcastArray(emitting);
+  RowStore rows(mesh, scene, options, emitting, nullptr);
   fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks, journal, &processes,
            progress);
   evenOut(processes, rows.matrix, {});
