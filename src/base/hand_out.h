@@ -24,8 +24,8 @@ struct BlockWork {
 };
 
 /// Hands out all blocks in order, one at a time, so that quick processes get more; process 0 works
-/// as well. All processes must call it; the most that they may get must be all blocks or more. Rethrows exceptions of run() and take() in process 0;
-/// throws Cancelled.
+/// as well. All processes must call it; the most that they may get must be all blocks or more.
+/// Rethrows exceptions of run() and take() in process 0; throws Cancelled.
 void handOut(Processes& processes, const BlockWork& work, Progress& progress);
 
 }  // namespace radiosity
