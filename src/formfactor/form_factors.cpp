@@ -176,7 +176,7 @@ void planExactRows(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   const std::vector<Index>& wanted = prepared.options.exact_rows;
   const std::size_t pairs = wanted.size() * prepared.mesh.unknowns();
   const double most = std::max(kLittleExactRowWork, kExactRowWork * prepared.ray_estimate.rays);
-  if (wanted.empty() || prepared.options.onlyForSources() || pairs > kMostExactPairs) return;
+  if (wanted.empty() || pairs > kMostExactPairs) return;
   if (kPreparedWork * double(prepared.mesh.size()) > kPreparedShare * most) return;
   const Stopwatch watch;
   progress.begin("preparing", ExactScene::kSteps);
@@ -198,7 +198,7 @@ void planExactRows(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
 
 void noteRowsByRays(const FormFactorPlan::Prepared& prepared, FormFactorReport& report) {
   const std::size_t wanted = prepared.options.exact_rows.size();
-  if (wanted == 0 || prepared.options.onlyForSources() || prepared.exact_rows) return;
+  if (wanted == 0 || prepared.exact_rows) return;
   report.notes.push_back(
       {Severity::info, fmt::format("rows of the {} {} that {} are by rays, as all others: exact "
                                    "ones would take too long",
@@ -321,6 +321,7 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   requireUnknowns(options.exact_rows, mesh->unknowns());
   const Stopwatch watch;
   auto prepared = std::make_shared<FormFactorPlan::Prepared>(std::move(mesh), options);
+  if (options.onlyForSources()) prepared->options.exact_rows.clear();
   FormFactorPlan plan;
   switch (options.method) {
     case FormFactorMethod::automatic:

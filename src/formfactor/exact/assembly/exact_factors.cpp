@@ -44,7 +44,6 @@ std::size_t recheckEvery(double occluded_pairs, double tolerance) {
 
 /// The emitters whose light is to be good to some percent at each receiver.
 std::vector<Index> emittersOf(const FormFactorOptions& options, std::size_t unknowns) {
-  if (options.onlyForSources()) return {};
   if (options.exact_rows.size() * unknowns > kMostEmitterPairs) return {};
   return options.exact_rows;
 }
@@ -60,7 +59,7 @@ struct RowStore {
         seen_backs(mesh.size()),
         enforces(options.closure == ClosureMode::enforce),
         uncertain(enforces ? mesh.size() : 0, scratch) {
-    if (!emitting.empty()) emitters.emplace(mesh, emitting);
+    if (!emitting.empty()) emitters.emplace(mesh, scene.order, emitting);
   }
   RowContext context(const ExactScene& scene, const ExactKernels& kernels,
                      std::size_t recheck_every, const Progress& progress) {

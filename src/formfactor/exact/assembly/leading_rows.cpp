@@ -162,7 +162,7 @@ std::size_t LeadingRows::bytes() const {
 }
 
 void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const {
-  const Emitters emitters(mesh_, wanted_);
+  const Emitters emitters(mesh_, scene_.order, wanted_);
   const RowContext context{scene_.elements,
                            scene_.order,
                            scene_.chunks,

@@ -62,8 +62,10 @@ PatchOrder::PatchOrder(const PatchMesh& mesh, const ElementSet& elements)
   }
 }
 
-Emitters::Emitters(const PatchMesh& mesh, std::span<const Index> unknowns)
-    : unknown(mesh.size()), emits(mesh.size()) {
+Emitters::Emitters(const PatchMesh& mesh, const PatchOrder& order, std::span<const Index> unknowns)
+    : unknown(mesh.size()),
+      emits(mesh.size()),
+      scene_area(std::accumulate(order.area.begin(), order.area.end(), 0.0)) {
   for (Index i = 0; i < mesh.size(); ++i) {
     unknown[i] = Index(mesh.unknownOf(i));
     emits[i] = std::ranges::binary_search(unknowns, unknown[i]) ? 1 : 0;
@@ -180,7 +182,7 @@ void RowAssembly::evaluateOccluded(RowSums& sums) {
 }
 
 Index RowAssembly::receiverOf(const OccludedPair& pair) const {
-  const auto& [unknown, emits] = *context_.emitters;
+  const auto& [unknown, emits, scene_area] = *context_.emitters;
   if (pair.column >= context_.elements.patch_elements) return kNone;
   const Index row = context_.elements.patch[pair.row];
   const Index column = context_.elements.patch[pair.column];
@@ -191,7 +193,7 @@ Index RowAssembly::receiverOf(const OccludedPair& pair) const {
 std::vector<std::size_t> RowAssembly::uncertainPairs() const {
   const ElementSet& elements = context_.elements;
   const std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
-  const double whole = std::accumulate(context_.order.area.begin(), context_.order.area.end(), 0.0);
+  const double scene_area = context_.emitters->scene_area;
   struct Light {
     double exchange = 0;
     double mean = 0;    ///< the exchange if all surfaces got the same
@@ -204,7 +206,7 @@ std::vector<std::size_t> RowAssembly::uncertainPairs() const {
     if (receiver == kNone) continue;
     Light& light = lights[receiver];
     light.exchange += occluded_[k].exchange;
-    light.mean += elements.area[pairs[k].row] * elements.area[pairs[k].column] / whole;
+    light.mean += elements.area[pairs[k].row] * elements.area[pairs[k].column] / scene_area;
     light.square += occluded_[k].error * occluded_[k].error;
     if (!occluded_[k].cut_short) by_error.push_back(k);
   }
@@ -224,17 +226,22 @@ std::vector<std::size_t> RowAssembly::uncertainPairs() const {
 void RowAssembly::replaceUncertain() {
   if (context_.emitters == nullptr) return;
   const std::vector<std::size_t> which = uncertainPairs();
-  if (which.empty()) return;
-  std::vector<OccludedPair> pairs;
-  pairs.reserve(which.size());
-  for (const std::size_t k : which) pairs.push_back(pairs_.occluded_pairs[k]);
-  std::vector<OccludedExchange> strict(which.size());
-  context_.occluded.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
+  const std::vector<OccludedExchange> strict = strictly(which);
   for (std::size_t m = 0; m < which.size(); ++m) occluded_[which[m]] = strict[m];
 }
 
-void RowAssembly::recheck(RowSums& sums) const {
+/// A strict evaluation of some occluded pairs.
+std::vector<OccludedExchange> RowAssembly::strictly(std::span<const std::size_t> which) const {
+  std::vector<OccludedExchange> strict(which.size());
+  if (which.empty()) return strict;
   std::vector<OccludedPair> pairs;
+  pairs.reserve(which.size());
+  for (const std::size_t k : which) pairs.push_back(pairs_.occluded_pairs[k]);
+  context_.occluded.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
+  return strict;
+}
+
+void RowAssembly::recheck(RowSums& sums) const {
   std::vector<std::size_t> which;
   for (std::size_t k = 0; k < occluded_.size(); ++k) {
     const OccludedPair& pair = pairs_.occluded_pairs[k];
@@ -242,14 +249,11 @@ void RowAssembly::recheck(RowSums& sums) const {
     if (occluded_[k].cut_short) continue;  // it would take as long again, and has stated its error
     if (pairHash(pair.row, pair.column) % context_.recheck_every != 0) continue;
     which.push_back(k);
-    pairs.push_back(pair);
   }
-  if (which.empty()) return;
-  std::vector<OccludedExchange> strict(which.size());
-  context_.occluded.evaluateStrictly(pairs, pairs_.occluder_list, strict, &context_.progress);
+  const std::vector<OccludedExchange> strict = strictly(which);
   for (std::size_t k = 0; k < which.size(); ++k) {
     const OccludedExchange& found = occluded_[which[k]];
-    const OccludedPair& pair = pairs[k];
+    const OccludedPair& pair = pairs_.occluded_pairs[which[k]];
     sums.error.addRecheck(context_.order.rank[pair.row], context_.order.rank[pair.column],
                           found.exchange - strict[k].exchange, found.error);
   }

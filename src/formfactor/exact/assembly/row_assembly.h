@@ -47,9 +47,10 @@ struct RowSums {
 /// Unknowns that emit. What others get from them is to be good to some percent itself, and not just
 /// beside the whole row of the emitter.
 struct Emitters {
-  Emitters(const PatchMesh& mesh, std::span<const Index> unknowns);
+  Emitters(const PatchMesh& mesh, const PatchOrder& order, std::span<const Index> unknowns);
   std::vector<Index> unknown;       ///< N: that each patch belongs to
   std::vector<std::uint8_t> emits;  ///< N
+  double scene_area;                ///< of all patches, in ElementSet's units
 };
 
 /// Inputs that all rows share, and the places that rows are stored in.
@@ -103,6 +104,7 @@ class RowAssembly {
   /// The unknown that gets light by a pair; kNone if neither end emits.
   Index receiverOf(const OccludedPair& pair) const;
   void recheck(RowSums& sums) const;
+  std::vector<OccludedExchange> strictly(std::span<const std::size_t> which) const;
   void storeUncertain(ElementRange rows);
   void storeUncertainRow(std::size_t rank, std::span<Uncertain> entries);
   void storePatches(ElementRange rows, RowSums& sums);
