@@ -17,6 +17,28 @@ namespace {
 
 constexpr std::size_t kNoBlock = std::size_t(-1);
 
+/// The blocks that nobody has yet. Thread-safe.
+class BlocksLeft {
+ public:
+  explicit BlocksLeft(const BlockWork& work) : work_(work) {}
+
+  /// The next block for a process that has had `taken`; kNoBlock if none is left or it has had its
+  /// most.
+  std::size_t take(std::size_t& taken) {
+    if (taken == work_.most_a_process) return kNoBlock;
+    const std::size_t block = next_++;
+    if (block >= work_.blocks) return kNoBlock;
+    ++taken;
+    return block;
+  }
+  /// Leaves none.
+  void clear() { next_ = work_.blocks; }
+
+ private:
+  const BlockWork& work_;
+  std::atomic<std::size_t> next_{0};
+};
+
 std::vector<std::byte> answer(std::size_t block, std::span<const std::byte> bytes) {
   ByteWriter writer;
   writer.put(block);
@@ -39,10 +61,10 @@ void workForOthers(Processes& processes, const BlockWork& work) {
 /// Computes process 0's own share in a thread beside the one that hands out.
 class OwnShare {
  public:
-  OwnShare(const BlockWork& work, std::atomic<std::size_t>& next)
-      : work_(work), next_(next), thread_([this] { run(); }) {}
+  OwnShare(const BlockWork& work, BlocksLeft& left)
+      : work_(work), left_(left), thread_([this] { run(); }) {}
   ~OwnShare() {
-    next_ = work_.blocks;
+    left_.clear();
     thread_.join();
   }
   OwnShare(const OwnShare&) = delete;
@@ -63,9 +85,10 @@ class OwnShare {
  private:
   void run() {
     try {
-      for (std::size_t taken = 0; taken < work_.most_a_process; ++taken) {
-        const std::size_t block = next_++;
-        if (block >= work_.blocks) break;
+      std::size_t taken = 0;
+      for (;;) {
+        const std::size_t block = left_.take(taken);
+        if (block == kNoBlock) return;
         std::vector<std::byte> bytes = work_.run(block);
         const std::lock_guard lock(mutex_);
         done_.emplace_back(block, std::move(bytes));
@@ -77,7 +100,7 @@ class OwnShare {
   }
 
   const BlockWork& work_;
-  std::atomic<std::size_t>& next_;
+  BlocksLeft& left_;
   std::mutex mutex_;
   std::deque<std::pair<std::size_t, std::vector<std::byte>>> done_;
   std::exception_ptr failure_;
@@ -87,11 +110,11 @@ class OwnShare {
 /// Hands blocks to the other processes.
 class OtherShares {
  public:
-  OtherShares(Processes& processes, const BlockWork& work, std::atomic<std::size_t>& next)
+  OtherShares(Processes& processes, const BlockWork& work, BlocksLeft& left)
       : processes_(processes),
         work_(work),
-        next_(next),
-        handed_(std::size_t(processes.size()), 0),
+        left_(left),
+        taken_(std::size_t(processes.size()), 0),
         working_(processes.size() - 1) {}
 
   bool working() const { return working_ > 0; }
@@ -102,7 +125,7 @@ class OtherShares {
     ByteReader reader(message.bytes);
     const auto done = reader.get<std::size_t>();
     const std::vector<std::byte> bytes = reader.getArray<std::byte>();
-    const std::size_t block = nextFor(message.from);
+    const std::size_t block = left_.take(taken_[std::size_t(message.from)]);
     if (block == kNoBlock) --working_;
     processes_.send(message.from, std::as_bytes(std::span(&block, 1)));
     if (done == kNoBlock) return false;
@@ -111,19 +134,10 @@ class OtherShares {
   }
 
  private:
-  std::size_t nextFor(int process) {
-    std::size_t& handed = handed_[std::size_t(process)];
-    if (handed == work_.most_a_process) return kNoBlock;
-    const std::size_t block = next_++;
-    if (block >= work_.blocks) return kNoBlock;
-    ++handed;
-    return block;
-  }
-
   Processes& processes_;
   const BlockWork& work_;
-  std::atomic<std::size_t>& next_;
-  std::vector<std::size_t> handed_;  // blocks, by process
+  BlocksLeft& left_;
+  std::vector<std::size_t> taken_;  // blocks, by process
   int working_;
 };
 
@@ -132,9 +146,9 @@ class OtherShares {
 void handOut(Processes& processes, const BlockWork& work, Progress& progress) {
   if (processes.rank() != 0) return workForOthers(processes, work);
   constexpr std::chrono::milliseconds kBetweenLooks{1};
-  std::atomic<std::size_t> next{0};
-  OwnShare own(work, next);
-  OtherShares others(processes, work, next);
+  BlocksLeft left(work);
+  OwnShare own(work, left);
+  OtherShares others(processes, work, left);
   for (std::size_t done = 0; done < work.blocks || others.working();) {
     progress.check();
     done += own.collect();
