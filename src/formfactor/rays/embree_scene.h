@@ -19,6 +19,20 @@ constexpr int kRayLanes = 16;
 /// precision, so that few hit their own polygon and next to none miss a wall that it touches.
 constexpr float kRayLift = 2e-7F;
 
+/// Makes a packet of rays without ends that have hit nothing; where they leave and their directions
+/// stay as they are.
+inline void initPacket(RTCRayHit16& packet) {
+  for (int k = 0; k < kRayLanes; ++k) {
+    packet.ray.tnear[k] = 0;
+    packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
+    packet.ray.time[k] = 0;
+    packet.ray.mask[k] = 0xffffffffu;
+    packet.ray.flags[k] = 0;
+    packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
 /// Puts a ray into lane k of a packet; `along`: a unit vector.
 inline void setRay(RTCRayHit16& packet, int k, const glm::vec3& from, const glm::vec3& along) {
   packet.ray.org_x[k] = from.x;
@@ -27,13 +41,6 @@ inline void setRay(RTCRayHit16& packet, int k, const glm::vec3& from, const glm:
   packet.ray.dir_x[k] = along.x;
   packet.ray.dir_y[k] = along.y;
   packet.ray.dir_z[k] = along.z;
-  packet.ray.tnear[k] = 0;
-  packet.ray.tfar[k] = std::numeric_limits<float>::infinity();
-  packet.ray.time[k] = 0;
-  packet.ray.mask[k] = 0xffffffffu;
-  packet.ray.flags[k] = 0;
-  packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-  packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
 }
 
 /// Edges are watertight: neighbouring polygons share their vertices, and Embree's robust mode lets

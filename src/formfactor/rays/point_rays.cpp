@@ -8,7 +8,7 @@
 
 #include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
-#include "formfactor/rays/disc.h"
+#include "formfactor/rays/ray_kernels.h"
 #include "formfactor/rays/sobol.h"
 
 namespace radiosity {
@@ -29,7 +29,7 @@ int discCellOf(float x, float y) {
 /// The polygons that must not stop a ray to a point; passed through Embree's context.
 struct SightContext {
   RTCIntersectContext context;  // first: Embree gives back a pointer to it
-  const Index* source;
+  const RayTargets* targets;
   std::span<const Index> own;
   Index there;
 };
@@ -37,7 +37,7 @@ struct SightContext {
 /// An intersection filter for a single ray: polygons that either end lies on stop nothing.
 void passEnds(const RTCFilterFunctionNArguments* hit) {
   const auto* sight = reinterpret_cast<const SightContext*>(hit->context);
-  const Index polygon = sight->source[RTCHitN_primID(hit->hit, 1, 0)];
+  const Index polygon = sight->targets->polygonOf(RTCHitN_primID(hit->hit, 1, 0));
   const bool own = std::find(sight->own.begin(), sight->own.end(), polygon) != sight->own.end();
   if (own || polygon == sight->there) hit->valid[0] = 0;
 }
@@ -52,6 +52,8 @@ HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed) : rays_(rays)
     points[d].resize(rays);
     out[d] = points[d].data();
   }
+  std::vector<float> u(rays);
+  std::vector<float> v(rays);
   std::vector<std::size_t> order(rays);
   for (std::size_t set = 0; set < kSets; ++set) {
     sobol.points(0, rays, seed + set, out);
@@ -59,30 +61,19 @@ HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed) : rays_(rays)
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return discCellOf(points[0][a], points[1][a]) < discCellOf(points[0][b], points[1][b]);
     });
+    rayKernels().toDisc(out[0], out[1], rays, u.data(), v.data());
     for (const std::size_t k : order) {
-      float u = 0;
-      float v = 0;
-      toDisc(points[0][k], points[1][k], u, v);
-      directions_.emplace_back(u, v, std::sqrt(std::max(0.0F, 1 - u * u - v * v)));
+      directions_.emplace_back(u[k], v[k],
+                               std::sqrt(std::max(0.0F, 1 - u[k] * u[k] - v[k] * v[k])));
       first_.push_back(k < rays / 2 ? 1 : 0);
     }
   }
 }
 
-PointRays::PointRays(const PatchMesh& mesh) : scene_(mesh), embree_(scene_, mesh) {
-  targets_.resize(embree_.triangles().size());
-  source_.resize(targets_.size());
-  parallelFor(targets_.size(), 1024, [&](std::size_t t) {
-    const ViewPolygon& polygon = scene_.polygons[embree_.polygonOf()[t]];
-    source_[t] = polygon.source;
-    for (std::size_t side = 0; side < 2; ++side) {
-      RayTarget& target = targets_[t][side];
-      target.item = polygon.side[side].item;
-      if (polygon.side[side].grid == kNone) continue;
-      target.place(scene_.grids[polygon.side[side].grid], embree_, t, polygon.origin);
-    }
-  });
-}
+PointRays::PointRays(const PatchMesh& mesh)
+    : scene_(mesh),
+      embree_(scene_, mesh),
+      targets_(scene_, embree_, [](std::uint32_t item) { return item; }) {}
 
 glm::vec3 PointRays::lifted(const RaySource& from) const {
   return embree_.place(from.position * scene_.scale) + kRayLift * glm::vec3(from.normal);
@@ -92,19 +83,19 @@ RayEnd PointRays::endOf(const RTCRayHit16& packet, int k, std::span<const Index>
   RayEnd end;
   if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return end;
   const std::uint32_t triangle = packet.hit.primID[k];
-  const Index polygon = source_[triangle];
+  const Index polygon = targets_.polygonOf(triangle);
   if (std::find(own.begin(), own.end(), polygon) != own.end()) {
     end.patch = RayEnd::kOwn;
     return end;
   }
   const glm::vec3 along(packet.ray.dir_x[k], packet.ray.dir_y[k], packet.ray.dir_z[k]);
   const glm::vec3 normal(packet.hit.Ng_x[k], packet.hit.Ng_y[k], packet.hit.Ng_z[k]);
-  std::uint32_t item = targets_[triangle][glm::dot(normal, along) < 0 ? 0 : 1].itemAt(
-      packet.hit.u[k], packet.hit.v[k]);
+  std::uint32_t item = targets_.itemAt(triangle, glm::dot(normal, along) < 0 ? 0 : 1,
+                                       packet.hit.u[k], packet.hit.v[k]);
   if (item >= scene_.patches) {
     const RTCHit front = embree_.frontAt(packet, k);
     if (front.geomID != RTC_INVALID_GEOMETRY_ID) {
-      item = targets_[front.primID][0].itemAt(front.u, front.v);
+      item = targets_.itemAt(front.primID, 0, front.u, front.v);
     }
   }
   end.patch = item < scene_.patches ? item : RayEnd::kBlack;
@@ -125,6 +116,7 @@ void PointRays::look(const RaySource& from, const HemisphereSet& set, std::size_
   const glm::vec3 start = lifted(from);
   RTCRayHit16 packet;
   for (std::size_t first = 0; first < set.rays(); first += kRayLanes) {
+    initPacket(packet);
     for (int k = 0; k < kRayLanes; ++k) {
       const glm::vec3& d = set.direction(number, first + std::size_t(k));
       setRay(packet, k, start, d.x * x + d.y * y + d.z * z);
@@ -140,6 +132,7 @@ void PointRays::trace(const Vec3& from, std::span<const Vec3> along, std::span<R
   RTCRayHit16 packet;
   for (std::size_t first = 0; first < along.size(); first += kRayLanes) {
     const auto lanes = std::min(std::size_t(kRayLanes), along.size() - first);
+    initPacket(packet);
     for (std::size_t k = 0; k < kRayLanes; ++k) {
       setRay(packet, int(k), start, glm::vec3(along[first + std::min(k, lanes - 1)]));
     }
@@ -153,7 +146,7 @@ void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<c
   const FlushDenormals flush;
   const glm::vec3 start = lifted(from);
   for (std::size_t k = 0; k < to.size(); ++k) {
-    SightContext sight{{}, source_.data(), from.own, there[k]};
+    SightContext sight{{}, &targets_, from.own, there[k]};
     rtcInitIntersectContext(&sight.context);
     sight.context.filter = passEnds;
     const glm::vec3 along = embree_.place(to[k] * scene_.scale) - start;

@@ -78,8 +78,7 @@ class PointRays {
 
   ViewScene scene_;
   EmbreeScene embree_;
-  std::vector<std::array<RayTarget, 2>> targets_;  ///< by triangle; front, back
-  std::vector<Index> source_;                      ///< the mesh's polygon of each triangle
+  RayTargets targets_;
 };
 
 }  // namespace radiosity

@@ -1,12 +1,8 @@
 #include "formfactor/rays/ray_caster.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
-
-#include "base/parallel.h"
-#include "formfactor/rays/disc.h"
 
 namespace radiosity {
 namespace {
@@ -16,36 +12,8 @@ constexpr std::uint32_t kSky = kNone - 1;
 constexpr std::uint32_t kLost = kNone - 2;
 /// Rays that are sorted together, at most: their batch fits the second-level cache.
 constexpr std::size_t kBatch = 16384;
-/// Directions are sorted into this many cells along each of two dimensions: kBatch points then put
-/// about one packet into each.
-constexpr std::uint32_t kCells = 32;
-
-/// The bits of a number below kCells with a 0 before each.
-std::uint32_t spread(std::uint32_t x) {
-  x = (x | (x << 4)) & 0x10fu;
-  x = (x | (x << 2)) & 0x133u;
-  return (x | (x << 1)) & 0x155u;
-}
-
-/// The place of cell (x, y), each below kCells, along a Z curve.
-std::uint16_t zCurve(std::uint32_t x, std::uint32_t y) {
-  return std::uint16_t(spread(x) | (spread(y) << 1));
-}
-
-std::uint32_t cellOf(float x) { return std::min(std::uint32_t(x * float(kCells)), kCells - 1); }
-
-/// The cell of a unit direction on an octahedron laid flat (Cigolle et al., JCGT 3(2), 2014).
-std::uint16_t octahedralCell(float x, float y, float z) {
-  const float scale = 1 / (std::abs(x) + std::abs(y) + std::abs(z));
-  float u = x * scale;
-  float v = y * scale;
-  if (z < 0) {
-    const float folded = (1 - std::abs(v)) * (u < 0 ? -1.0F : 1.0F);
-    v = (1 - std::abs(u)) * (v < 0 ? -1.0F : 1.0F);
-    u = folded;
-  }
-  return zCurve(cellOf(std::max(0.0F, 0.5F + 0.5F * u)), cellOf(std::max(0.0F, 0.5F + 0.5F * v)));
-}
+/// Cells of directions: kBatch points put about one packet into each.
+constexpr std::size_t kCells = std::size_t(kDirectionCells) * kDirectionCells;
 
 }  // namespace
 
@@ -53,15 +21,15 @@ std::uint16_t octahedralCell(float x, float y, float z) {
 struct RayCaster::Batch {
   std::size_t each = 0;  ///< rays of a replicate
   std::array<std::array<float, kBatch>, kDimensions> points;
-  std::array<std::array<float, kBatch>, 2> disc;
   std::array<std::array<float, kBatch>, 3> origin;
   std::array<std::array<float, kBatch>, 3> direction;
-  std::array<Index, kBatch> polygon;  ///< from which each ray leaves
-  std::array<std::uint32_t, kBatch> frame;
+  std::array<std::int32_t, kBatch> part;  ///< of the origins, of each ray
   std::array<std::uint16_t, kBatch> cell;
   std::array<std::uint16_t, kBatch> order;
 
   std::size_t size() const { return kReplicates * each; }
+  /// The same filled up to whole packets.
+  std::size_t padded() const { return (size() + kRayLanes - 1) / kRayLanes * kRayLanes; }
 
   /// Points `first` to `first + each` of every replicate's sequence.
   void place(const SobolPoints& sobol, std::uint64_t seed, std::uint32_t first) {
@@ -76,53 +44,56 @@ struct RayCaster::Batch {
         done += count;
       }
     }
+    for (std::array<float, kBatch>& values : points) {
+      std::fill(values.begin() + std::ptrdiff_t(size()), values.begin() + std::ptrdiff_t(padded()),
+                0.0F);
+    }
   }
 
-  void aim(const RayOrigins& origins) {
-    for (std::size_t k = 0; k < size(); ++k) {
-      toDisc(points[2][k], points[3][k], disc[0][k], disc[1][k]);
-    }
-    const bool planar = origins.isPlanar();
-    for (std::size_t k = 0; k < size(); ++k) {
-      float x = 0;
-      const RayOrigins::Part& part = origins.part(origins.partAt(points[0][k], x));
-      const RayFrame& axes = origins.frame(part.frame);
-      const glm::vec3 from = RayOrigins::pointAt(part, x, points[1][k]) + kRayLift * axes.z;
-      const float u = disc[0][k];
-      const float v = disc[1][k];
-      const float w = std::sqrt(std::max(0.0F, 1 - u * u - v * v));
-      const glm::vec3 along = u * axes.x + v * axes.y + w * axes.z;
-      for (std::size_t c = 0; c < 3; ++c) {
-        origin[c][k] = from[int(c)];
-        direction[c][k] = along[int(c)];
+  void aim(const RayOrigins& origins, const RayKernels& kernels) {
+    if (origins.parts() == 1) {
+      std::fill_n(part.begin(), padded(), 0);
+    } else {
+      for (std::size_t k = 0; k < padded(); ++k) {
+        part[k] = std::int32_t(origins.partAt(points[0][k], points[0][k]));
       }
-      polygon[k] = part.polygon;
-      frame[k] = part.frame;
-      cell[k] = planar ? zCurve(cellOf(points[2][k]), cellOf(points[3][k]))
-                       : octahedralCell(along.x, along.y, along.z);
     }
+    kernels.aim(origins, size(), arrays(origins));
+  }
+
+  RayArrays arrays(const RayOrigins& origins) {
+    return {{points[0].data(), points[1].data(), points[2].data(), points[3].data()},
+            origins.parts() == 1 ? nullptr : part.data(),
+            {origin[0].data(), origin[1].data(), origin[2].data()},
+            {direction[0].data(), direction[1].data(), direction[2].data()},
+            cell.data()};
   }
 
   /// The order in which rays leave together: by direction.
   void sort() {
-    std::array<std::uint16_t, kCells * kCells + 1> start{};
+    std::array<std::uint16_t, kCells + 1> start{};
     for (std::size_t k = 0; k < size(); ++k) ++start[cell[k] + 1u];
     for (std::size_t c = 1; c < start.size(); ++c) {
       start[c] = std::uint16_t(start[c] + start[c - 1]);
     }
     for (std::size_t k = 0; k < size(); ++k) order[start[cell[k]]++] = std::uint16_t(k);
+    std::fill(order.begin() + std::ptrdiff_t(size()), order.begin() + std::ptrdiff_t(padded()),
+              order[size() - 1]);
   }
 };
 
 RayCaster::RayCaster(const PatchMesh& mesh, RayItems items)
-    : mesh_(mesh), items_(items), scene_(mesh), embree_(scene_, mesh) {
-  setTargets();
-}
+    : mesh_(mesh),
+      items_(items),
+      scene_(mesh),
+      embree_(scene_, mesh),
+      targets_(scene_, embree_, [this](std::uint32_t item) { return rayItem(item); }),
+      kernels_(rayKernels()) {}
 
 std::size_t RayCaster::bytes() const {
   // Embree's tree takes about this much a triangle in robust mode.
   constexpr std::size_t kTreeBytes = 160;
-  return scene_.bytes() + targets_.size() * (sizeof(targets_[0]) + sizeof(Index) + kTreeBytes);
+  return scene_.bytes() + targets_.bytes() + triangles() * kTreeBytes;
 }
 
 /// The item of rays for an item of the ViewScene.
@@ -132,81 +103,39 @@ std::uint32_t RayCaster::rayItem(std::uint32_t item) const {
   return std::uint32_t(fronts() + (item - patches));
 }
 
-void RayCaster::setTargets() {
-  // If all patches of a side count for one item, there is nothing to look up.
-  std::vector<std::array<std::uint32_t, 2>> only(mesh_.polygons.size(), {kNone, kNone});
-  std::vector<std::array<std::uint8_t, 2>> several(mesh_.polygons.size(), {0, 0});
-  for (std::size_t i = 0; i < mesh_.size(); ++i) {
-    if (mesh_.polygon[i] == kNone) continue;
-    const std::size_t side = mesh_.side[i] != 0;
-    std::uint32_t& front = only[mesh_.polygon[i]][side];
-    const std::uint32_t own = frontOf(i);
-    several[mesh_.polygon[i]][side] |= std::uint8_t(front != kNone && front != own);
-    front = own;
-  }
-  targets_.resize(embree_.triangles().size());
-  source_.resize(targets_.size());
-  parallelFor(targets_.size(), 1024, [&](std::size_t t) {
-    const ViewPolygon& polygon = scene_.polygons[embree_.polygonOf()[t]];
-    source_[t] = polygon.source;
-    for (std::size_t side = 0; side < 2; ++side) {
-      RayTarget& target = targets_[t][side];
-      target.item = rayItem(polygon.side[side].item);
-      if (several[polygon.source][side] == 0) continue;
-      target.place(scene_.grids[polygon.side[side].grid], embree_, t, polygon.origin);
-    }
-  });
-}
-
-std::uint32_t RayCaster::itemAt(const RayTarget& target, float s, float t) const {
-  return target.grid == nullptr ? target.item : rayItem(target.itemAt(s, t));
-}
-
-/// The item that the ray in lane k has hit.
-std::uint32_t RayCaster::itemOf(const RTCRayHit16& packet, int k) const {
-  // A triangle's corners run counter-clockwise about the front, and Embree's normal is
-  // (v1 - v0) x (v2 - v0).
-  const float along = packet.hit.Ng_x[k] * packet.ray.dir_x[k] +
-                      packet.hit.Ng_y[k] * packet.ray.dir_y[k] +
-                      packet.hit.Ng_z[k] * packet.ray.dir_z[k];
-  const RayTarget& target = targets_[packet.hit.primID[k]][along < 0 ? 0 : 1];
-  return itemAt(target, packet.hit.u[k], packet.hit.v[k]);
-}
-
 /// The item whose front covers the back that a ray has hit (EmbreeScene::frontAt()), or kNone.
 std::uint32_t RayCaster::frontAt(const RTCRayHit16& packet, int k) const {
   const RTCHit front = embree_.frontAt(packet, k);
   if (front.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
-  return itemAt(targets_[front.primID][0], front.u, front.v);
+  return targets_.itemAt(front.primID, 0, front.u, front.v);
 }
 
 /// Calls visit(ray, item) with the ray's place in the batch; kSky and kLost stand for no item.
 template <class Visit>
-void RayCaster::tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
-                            const Visit& visit) const {
+void RayCaster::tracePacket(const RayOrigins& origins, Batch& batch, const std::uint16_t* order,
+                            int lanes, const Visit& visit) const {
   RTCRayHit16 packet;
-  for (int k = 0; k < kRayLanes; ++k) {
-    const std::size_t from = order[k < lanes ? k : 0];
-    setRay(packet, k, {batch.origin[0][from], batch.origin[1][from], batch.origin[2][from]},
-           {batch.direction[0][from], batch.direction[1][from], batch.direction[2][from]});
-  }
+  RayEnds ends;
+  initPacket(packet);
+  kernels_.fill(batch.arrays(origins), order, packet);
   embree_.trace(packet, lanes);
+  kernels_.find(packet, targets_, ends);
   for (int k = 0; k < lanes; ++k) {
+    const std::size_t ray = order[k];
     if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
-      visit(order[k], kSky);
+      visit(ray, kSky);
       continue;
     }
-    const std::uint32_t triangle = packet.hit.primID[k];
-    if (source_[triangle] == batch.polygon[order[k]]) {
-      visit(order[k], kLost);
+    if (ends.polygon[std::size_t(k)] == origins.part(std::uint32_t(batch.part[ray])).polygon) {
+      visit(ray, kLost);
       continue;
     }
-    std::uint32_t item = itemOf(packet, k);
+    std::uint32_t item = targets_.itemOf(ends, std::size_t(k));
     if (item >= fronts()) {
       const std::uint32_t front = frontAt(packet, k);
       if (front != kNone) item = front;
     }
-    visit(order[k], item);
+    visit(ray, item);
   }
 }
 
@@ -219,7 +148,7 @@ void RayCaster::forPackets(const RayOrigins& origins, std::uint64_t seed, std::u
   while (first < last) {
     batch->each = std::min<std::size_t>(last - first, kBatch / kReplicates);
     batch->place(sobol_, seed, first);
-    batch->aim(origins);
+    batch->aim(origins, kernels_);
     batch->sort();
     for (std::size_t k = 0; k < batch->size(); k += kRayLanes) {
       const int lanes = int(std::min<std::size_t>(batch->size() - k, kRayLanes));
@@ -233,11 +162,10 @@ void RayCaster::forPackets(const RayOrigins& origins, std::uint64_t seed, std::u
 template <class Visit>
 void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
                       std::uint32_t last, const Visit& visit) const {
-  forPackets(origins, seed, first, last,
-             [&](const Batch& batch, const std::uint16_t* order, int lanes) {
-               tracePacket(batch, order, lanes,
-                           [&](std::size_t ray, std::uint32_t item) { visit(batch, ray, item); });
-             });
+  forPackets(origins, seed, first, last, [&](Batch& batch, const std::uint16_t* order, int lanes) {
+    tracePacket(origins, batch, order, lanes,
+                [&](std::size_t ray, std::uint32_t item) { visit(batch, ray, item); });
+  });
 }
 
 void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
@@ -259,7 +187,8 @@ void RayCaster::visitEnd(const RayOrigins& origins, const Batch& batch, std::siz
                          std::uint32_t item, const EndVisitor& visit) const {
   if (item == kLost) return;
   const glm::vec3 from(batch.origin[0][ray], batch.origin[1][ray], batch.origin[2][ray]);
-  visit(from, origins.frame(batch.frame[ray]).z, item == kSky ? std::uint32_t(items()) : item);
+  visit(from, origins.frame(origins.part(std::uint32_t(batch.part[ray])).frame).z,
+        item == kSky ? std::uint32_t(items()) : item);
 }
 
 void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,

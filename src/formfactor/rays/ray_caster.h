@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formfactor/rays/embree_scene.h"
+#include "formfactor/rays/ray_kernels.h"
 #include "formfactor/rays/ray_origins.h"
 #include "formfactor/rays/ray_rows.h"
 #include "formfactor/rays/ray_target.h"
@@ -90,13 +91,10 @@ class RayCaster {
  private:
   struct Batch;
 
-  void setTargets();
   std::uint32_t frontOf(std::size_t patch) const {
     return std::uint32_t(items_ == RayItems::unknowns ? mesh_.unknownOf(patch) : patch);
   }
   std::uint32_t rayItem(std::uint32_t item) const;
-  std::uint32_t itemAt(const RayTarget& target, float s, float t) const;
-  std::uint32_t itemOf(const RTCRayHit16& packet, int k) const;
   std::uint32_t frontAt(const RTCRayHit16& packet, int k) const;
   template <class Packet>
   void forPackets(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
@@ -107,7 +105,7 @@ class RayCaster {
   void visitEnd(const RayOrigins& origins, const Batch& batch, std::size_t ray, std::uint32_t item,
                 const EndVisitor& visit) const;
   template <class Visit>
-  void tracePacket(const Batch& batch, const std::uint16_t* order, int lanes,
+  void tracePacket(const RayOrigins& origins, Batch& batch, const std::uint16_t* order, int lanes,
                    const Visit& visit) const;
 
   const PatchMesh& mesh_;
@@ -115,8 +113,8 @@ class RayCaster {
   ViewScene scene_;
   EmbreeScene embree_;
   SobolPoints sobol_;
-  std::vector<std::array<RayTarget, 2>> targets_;  ///< by triangle; front, back
-  std::vector<Index> source_;                      ///< the mesh's polygon of each triangle
+  RayTargets targets_;
+  RayKernels kernels_;
 };
 
 }  // namespace radiosity

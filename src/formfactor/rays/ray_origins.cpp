@@ -55,7 +55,8 @@ void RayOrigins::addPatch(const PatchMesh& mesh, std::size_t patch, double scale
     const double area = glm::length(glm::cross(b - a, c - a)) * (parallelogram ? 2 : 1);
     if (!(area > 0)) return;
     parts_.push_back({glm::vec3(a), glm::vec3(b - a), glm::vec3(c - a),
-                      std::uint32_t(frames_.size() - 1), mesh.polygon[patch], parallelogram});
+                      std::uint32_t(frames_.size() - 1), mesh.polygon[patch],
+                      parallelogram ? 1u : 0u});
     end_.push_back((end_.empty() ? 0.0 : end_.back()) + area);
   };
   const auto outline = mesh.outline(patch);
@@ -85,12 +86,6 @@ std::uint32_t RayOrigins::partAt(float x, float& within) const {
   const auto k = std::uint32_t(after - end_.begin());
   within = std::clamp((x - first_[k]) * stretch_[k], 0.0F, kBelowOne);
   return k;
-}
-
-glm::vec3 RayOrigins::pointAt(const Part& part, float x, float y) {
-  if (part.parallelogram) return part.corner + x * part.ab + y * part.ac;
-  const float root = std::sqrt(x);
-  return part.corner + root * ((1 - y) * part.ab + y * part.ac);
 }
 
 }  // namespace radiosity

@@ -28,8 +28,8 @@ class RayOrigins {
     glm::vec3 ab;  ///< edges that leave the corner
     glm::vec3 ac;
     std::uint32_t frame;
-    Index polygon;  ///< of the mesh
-    bool parallelogram;
+    Index polygon;                ///< of the mesh
+    std::uint32_t parallelogram;  ///< 1, or 0 for a triangle: kernels read whole words
   };
 
   bool empty() const { return parts_.empty(); }
@@ -39,12 +39,11 @@ class RayOrigins {
   bool isPlanar() const { return frames_.size() == 1; }
   const RayFrame& frame(std::uint32_t k) const { return frames_[k]; }
   const Part& part(std::uint32_t k) const { return parts_[k]; }
+  std::size_t parts() const { return parts_.size(); }
 
   /// The part that x in [0, 1) falls on, and the place in its own range. Parts have shares of x by
   /// their area, so that points spread evenly over x spread evenly over all of it.
   std::uint32_t partAt(float x, float& within) const;
-  /// The point of a part at (x, y) in [0, 1)^2; areas keep their ratios.
-  static glm::vec3 pointAt(const Part& part, float x, float y);
 
  private:
   void addPatch(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle);

@@ -1,59 +1,70 @@
-// The patch that a ray has hit, found from the place on a triangle where it ended.
+// What rays count for, found from the place on a triangle where they ended.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <glm/geometric.hpp>
+#include <functional>
+#include <span>
+#include <vector>
 
+#include "formfactor/cell_tree.h"
 #include "formfactor/rays/embree_scene.h"
+#include "formfactor/view_scene.h"
 
 namespace radiosity {
 
-/// The item that one side of a triangle counts for, and the map from a hit's position (Embree's s
-/// and t) to the grid of its polygon: u[0] + u[1] s + u[2] t.
+/// One side of a triangle: the item that it counts for, or the map from a hit's position (Embree's
+/// s and t) to its polygon's grid: u[0] + u[1] s + u[2] t. Vector kernels read it word by word.
 struct RayTarget {
-  const PatchGrid* grid = nullptr;  ///< null: `item` everywhere
   std::array<float, 3> u{};
   std::array<float, 3> v{};
-  std::uint32_t item = 0;
+  std::int32_t columns = 0;  ///< 0: no grid
+  std::int32_t rows = 0;
+  std::int32_t first = 0;  ///< the grid's first cell; without a grid, the item everywhere
+  Index polygon = 0;       ///< of the mesh
+};
 
-  /// Looks items up in a grid of triangle `t`'s polygon.
-  void place(const PatchGrid& of, const EmbreeScene& embree, std::size_t t, const Vec3& origin) {
-    const auto& corners = embree.triangles()[t];
-    const Vec3 a = embree.vertices()[corners[0]];
-    const Vec3 ab = embree.vertices()[corners[1]] - a;
-    const Vec3 ac = embree.vertices()[corners[2]] - a;
-    const Vec3 from = a - origin;
-    grid = &of;
-    u = {float(glm::dot(of.uAxis(), from) + of.uOffset()), float(glm::dot(of.uAxis(), ab)),
-         float(glm::dot(of.uAxis(), ac))};
-    v = {float(glm::dot(of.vAxis(), from) + of.vOffset()), float(glm::dot(of.vAxis(), ab)),
-         float(glm::dot(of.vAxis(), ac))};
+/// Where the lanes of a packet ended.
+struct RayEnds {
+  alignas(64) std::array<std::int32_t, kRayLanes> entry;  ///< item, or ~node of a tree
+  alignas(64) std::array<float, kRayLanes> u;             ///< in the grid's coordinates
+  alignas(64) std::array<float, kRayLanes> v;
+  alignas(64) std::array<Index, kRayLanes> polygon;
+};
+
+/// The targets of all triangles of a scene, with the cells and trees of all grids behind them.
+class RayTargets {
+ public:
+  /// The item that rays count for, of one of the ViewScene's.
+  using ItemOf = std::function<std::uint32_t(std::uint32_t)>;
+  RayTargets(const ViewScene& scene, const EmbreeScene& embree, const ItemOf& item_of);
+
+  /// `side`: 0 the front, 1 the back; s, t: Embree's. As PolygonSide::item.
+  std::uint32_t itemAt(std::uint32_t triangle, int side, float s, float t) const;
+  /// The item of an entry of `ends`.
+  std::uint32_t itemOf(const RayEnds& ends, std::size_t lane) const {
+    const std::int32_t entry = ends.entry[lane];
+    return entry >= 0 ? std::uint32_t(entry) : leafOf(entry, ends.u[lane], ends.v[lane]);
   }
+  Index polygonOf(std::uint32_t triangle) const { return targets_[2 * triangle].polygon; }
 
-  /// As PolygonSide::item.
-  std::uint32_t itemAt(float s, float t) const {
-    if (grid == nullptr) return item;
-    const float gu = u[0] + s * u[1] + t * u[2];
-    const float gv = v[0] + s * v[1] + t * v[2];
-    const std::int32_t column = cellAt(gu, grid->columns());
-    const std::int32_t row = cellAt(gv, grid->rows());
-    std::int32_t entry =
-        grid->cells()[std::size_t(row) * std::size_t(grid->columns()) + std::size_t(column)];
-    while (entry < 0) {
-      const CellNode& node = grid->node(~entry);
-      entry = node.a * gu + node.b * gv + node.c >= 0 ? node.inside : node.outside;
-    }
-    return std::uint32_t(entry);
+  /// Front and back of each triangle in turn; one, of no triangle, if there are none.
+  std::span<const RayTarget> targets() const { return targets_; }
+  /// Of all grids. An item if >= 0, else the node ~cell.
+  std::span<const std::int32_t> cells() const { return cells_; }
+  std::size_t bytes() const {
+    return targets_.size() * sizeof(RayTarget) + cells_.size() * sizeof(std::int32_t) +
+           nodes_.size() * sizeof(CellNode);
   }
 
  private:
-  /// The cell of a grid at a coordinate: cells are centred on whole numbers.
-  static std::int32_t cellAt(float x, std::int32_t cells) {
-    constexpr float kHalf = 0.5;
-    return std::clamp(std::int32_t(x + kHalf), 0, cells - 1);
-  }
+  struct GridPlace;  // of a grid behind the others
+  GridPlace append(const PatchGrid& grid, const ItemOf& item_of);
+  std::uint32_t leafOf(std::int32_t entry, float u, float v) const;
+
+  std::vector<RayTarget> targets_;
+  std::vector<std::int32_t> cells_;
+  std::vector<CellNode> nodes_;
 };
 
 }  // namespace radiosity

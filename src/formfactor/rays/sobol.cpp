@@ -1,5 +1,7 @@
 #include "formfactor/rays/sobol.h"
 
+#include "formfactor/rays/ray_kernels.h"
+
 namespace radiosity {
 namespace {
 
@@ -19,17 +21,6 @@ std::uint32_t reverseBits(std::uint32_t x) {
   x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
   x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
-}
-
-/// A permutation in which every bit depends on lower ones alone (Laine and Karras 2011, constants
-/// of Burley 2020): on bit-reversed numbers, a nested uniform scrambling.
-std::uint32_t nestedPermutation(std::uint32_t x, std::uint32_t seed) {
-  x += seed;
-  x ^= x * 0x6c50b47cu;
-  x ^= x * 0xb82f1e52u;
-  x ^= x * 0xc7afe638u;
-  x ^= x * 0x8d22f6e6u;
-  return x;
 }
 
 /// Well-mixed bits of seed and dimension (the finaliser of SplitMix64, Steele et al. 2014).
@@ -81,17 +72,14 @@ SobolPoints::SobolPoints() {
 
 void SobolPoints::points(std::uint32_t first, std::size_t count, std::uint64_t seed,
                          const PointArrays& out) const {
+  const RayKernels kernels = rayKernels();
   for (std::size_t d = 0; d < kDimensions; ++d) {
     // The sequence is linear over XOR: point(a + b) = point(a) ^ point(b) where no bits meet.
     std::uint32_t base = 0;
     for (std::size_t bit = 0; bit < 32; ++bit) {
       if ((first >> bit) & 1u) base ^= direction_[d][bit];
     }
-    const std::uint32_t dimension_seed = mixed(seed, d);
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::uint32_t x = reverseBits(nestedPermutation(first_[d][k] ^ base, dimension_seed));
-      out[d][k] = float(x >> 8) * 0x1p-24F;
-    }
+    kernels.scramble(first_[d].data(), count, base, mixed(seed, d), out[d]);
   }
 }
 
