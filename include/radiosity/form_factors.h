@@ -87,13 +87,15 @@ struct FormFactorOptions {
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction from the item buffer.
   bool near_exact = false;
-  /// Rays: unknowns (patches, or clusters if there are any), ascending, whose exchange with all
-  /// others is exact: those that emit (emittingUnknowns()), since all other light comes from them.
-  /// They are left to rays, and the report says so, if exact rows would take more than half as long
-  /// as all rays and more than some seconds, or if they have more than a million pairs. Exact: what
+  /// Rays and hemicube: unknowns (patches, or clusters if there are any), ascending, whose exchange
+  /// with all others is exact: those that emit (emittingUnknowns()), since all other light comes
+  /// from them. In a hemicube's row what else was seen is scaled to the rest of 1. They are left to
+  /// rays or hemicubes, and the report says so, if exact rows would take more than half as long as
+  /// these and more than some seconds, or if they have more than a million pairs. Exact: what
   /// other unknowns get from these is good to 5% itself where it is 1% of the mean or more, if they
   /// have a million pairs at most. Neither if onlyForSources().
   std::vector<Index> exact_rows;
+  bool exact_emitters = true;    ///< false: exact_rows are estimated as all others
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
   /// A folder on a disk. Rows that do not fit within memory_limit go into an unnamed file there
   /// (ScratchMemory), with the same bits. Empty: such a matrix is refused.
@@ -174,8 +176,6 @@ struct RayReport {
   std::size_t rays = 0;    ///< cast in total
   std::size_t lost = 0;    ///< of these, not counted: they hit the polygon they left
   std::size_t leaked = 0;  ///< also not counted: they left a scene that is proved closed
-  /// Rows that are exact, not estimated; empty if FormFactorOptions::exact_rows asked for none.
-  std::optional<std::size_t> exact_rows;
   int rounds = 0;
   std::size_t short_rows = 0;  ///< given up before they met the tolerance
   /// The tolerance that rows were cast to, if none was asked for and kMostRaysUnasked did not
@@ -204,10 +204,13 @@ struct FormFactorReport {
   std::size_t pixels = 0;               ///< resolved, summed over hemicubes
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
   std::size_t capped = 0;               ///< rows whose near entries were limited to a sum of 1
-  std::string simd_target;              ///< Highway's name, e.g. "AVX3", "SCALAR"
-  double seconds = 0;                   ///< in total
-  double seconds_plan = 0;              ///< of these, for the plan, without seconds_prepare
-  double estimated_seconds = 0;         ///< the others, as estimated when they were planned
+  /// Rays and hemicube: rows that are exact, not estimated; empty if FormFactorOptions::exact_rows
+  /// asked for none.
+  std::optional<std::size_t> exact_rows;
+  std::string simd_target;       ///< Highway's name, e.g. "AVX3", "SCALAR"
+  double seconds = 0;            ///< in total
+  double seconds_plan = 0;       ///< of these, for the plan, without seconds_prepare
+  double estimated_seconds = 0;  ///< the others, as estimated when they were planned
   std::size_t matrix_bytes = 0;
   std::size_t estimated_bytes = 0;  ///< as estimated before the run
   double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method

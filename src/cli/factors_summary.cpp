@@ -88,7 +88,6 @@ void rayFigures(Report& report, const RayReport& r) {
   report.number("million_rays_per_second", "  a second, millions", rate);
   report.count("rays_lost", "  not counted", r.lost);
   report.count("rays_leaked", "  of them leaked out", r.leaked);
-  if (r.exact_rows) report.count("exact_rows", "exact rows, of emitters", *r.exact_rows);
   report.count("rounds", "rounds", std::size_t(r.rounds));
   report.count("short_rows", "rows short of the tolerance", r.short_rows);
   if (r.loosened_tolerance) {
@@ -149,6 +148,7 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
     const Section section(report, detail, "form_factors", "Form factors");
     report.text("method", "method", nameOf(kFactorsFromNames, factors.method));
     if (!r.method_reason.empty()) report.text("method_reason", "  because", r.method_reason);
+    if (r.exact_rows) report.count("exact_rows", "exact rows, of emitters", *r.exact_rows);
     report.count("empty_rows", "empty rows (degenerate)", r.empty_rows);
     report.seconds("seconds", "time", r.seconds);
     report.seconds("seconds_plan", "  of that, planning", r.seconds_plan);

@@ -68,6 +68,7 @@ FormFactorOptions Request::apply(FormFactorOptions options) const {
   set(options, &FormFactorOptions::tolerance, tolerance, "--tolerance");
   setNamed(options.closure, kClosureNames, closure);
   if (near_pairs) options.near_exact = *near_pairs == "exact";
+  if (emitters) options.exact_emitters = *emitters == "exact";
   set(options, &FormFactorOptions::resolution, resolution, "--resolution");
   set(options, &FormFactorOptions::seed, seed, "--seed");
   setNamed(options.eye, kEyeNames, eye);

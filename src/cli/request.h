@@ -45,6 +45,7 @@ struct Request {
   std::optional<double> tolerance;
   std::optional<std::string> closure;
   std::optional<std::string> near_pairs;
+  std::optional<std::string> emitters;
   std::optional<int> resolution;
   std::optional<std::uint64_t> seed;
   std::optional<std::string> eye;

@@ -174,6 +174,11 @@ void addFactorOptions(CLI::App& app, Request& r) {
       "hemicube: area-to-area values times the visible fraction for pairs closer than about two "
       "patch sizes (default: off)")
       ->check(CLI::IsMember({"exact", "off"}));
+  add(app, "Form factors", "--emitters", r.emitters, "exact|estimated",
+      "Rays and hemicubes: form factors to and from what emits are exact (default), or estimated "
+      "as "
+      "all others")
+      ->check(CLI::IsMember({"exact", "estimated"}));
   add(app, "Form factors", "--precision", r.precision, "auto|single|double",
       "Of the stored form factors (default auto: single unless --tolerance is below 1e-6); sums "
       "are "

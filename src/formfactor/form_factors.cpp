@@ -40,10 +40,12 @@ struct FormFactorPlan::Prepared {
   HemicubeEstimate hemicube_estimate;
   std::optional<RayScene> rays;
   RayEstimate ray_estimate;
-  std::optional<LeadingRows> exact_rows;  ///< computed beside rays
+  std::optional<PatchMesh> patches;       ///< if hemicubes look from clusters' patches: these alone
+  std::optional<LeadingRows> exact_rows;  ///< computed beside rays or hemicubes
   double seconds = 0;                     ///< of all this
   double seconds_exact = 0;               ///< of these, for the scene and kernels of exact
-  double seconds_rays = 0;                ///< of these, for the scene of rays and exact_rows
+  double seconds_rays = 0;                ///< of these, for the scene of rays
+  double seconds_exact_rows = 0;          ///< of these, for exact_rows
 };
 
 namespace {
@@ -146,14 +148,18 @@ void planHemicubes(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Pro
   plan.method = FormFactorMethod::hemicube;
 }
 
-/// Tolerances of exact rows beside rays: errors of a pair, relative to the mean form factor. The
-/// first that is not too much work is taken. (Furnished room, 2,000 unknowns: their view of its
-/// lamp differs by .05% rms between the two, and is 3.7% off by rays to 1e-2; the first takes four
-/// times as long as the second.)
+/// Tolerances of exact rows beside rays or hemicubes: errors of a pair, relative to the mean form
+/// factor. The first that is not too much work is taken. (Furnished room, 2,000 unknowns: their
+/// view of its lamp differs by .05% rms between the two, and is 3.7% off by rays to 1e-2; the first
+/// takes four times as long as the second.)
 constexpr std::array<double, 2> kExactRowTolerances{FormFactorOptions::kExactTolerance, 1e-2};
-/// Exact rows may be this much work (foreseen_work.h) for each ray, about half that of all rays,
-/// and in any case kLittleExactRowWork, about two seconds of a core.
+/// Exact rows may be this much work (foreseen_work.h) for each ray, or for each hemicube and
+/// polygon that it looks at: about half of what these take (a hemicube of 256 pixels .15 ms with 17
+/// polygons, .95 ms with 17,672). In any case they may be kLittleExactRowWork, about two seconds of
+/// a core.
 constexpr double kExactRowWork = 7;
+constexpr double kExactRowWorkAHemicube = 1e4;
+constexpr double kExactRowWorkAPolygon = 2;
 constexpr double kLittleExactRowWork = 2e8;
 /// Preparing exact rows is about this much work for each patch. It may be kPreparedShare of what
 /// the rows may be, so that rows that turn out to be too much have not cost long.
@@ -171,39 +177,69 @@ void requireUnknowns(const std::vector<Index>& rows, std::size_t unknowns) {
   }
 }
 
-/// Prepares the rows that are to be exact, unless that is too much work beside the rays.
-void planExactRows(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
+/// The unknowns whose rows are to be exact; for hemicubes, which look from every patch, their
+/// patches.
+std::vector<Index> exactRowsOf(const FormFactorPlan::Prepared& prepared, FormFactorMethod method) {
   const std::vector<Index>& wanted = prepared.options.exact_rows;
-  const std::size_t pairs = wanted.size() * prepared.mesh.unknowns();
-  const double most = std::max(kLittleExactRowWork, kExactRowWork * prepared.ray_estimate.rays);
+  if (method == FormFactorMethod::rays || !prepared.mesh.clusters) return wanted;
+  std::vector<Index> patches;
+  for (const Index unknown : wanted) {
+    const auto own = prepared.mesh.clusters->patchesOf(unknown);
+    patches.insert(patches.end(), own.begin(), own.end());
+  }
+  std::sort(patches.begin(), patches.end());
+  return patches;
+}
+
+/// Prepares the rows that are to be exact, unless that is too much work beside the rays or
+/// hemicubes.
+void planExactRows(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
+  const bool rays = plan.method == FormFactorMethod::rays;
+  const std::vector<Index> wanted = exactRowsOf(prepared, plan.method);
+  const std::size_t pairs =
+      wanted.size() * (rays ? prepared.mesh.unknowns() : prepared.mesh.size());
+  const double a_hemicube =
+      kExactRowWorkAHemicube + kExactRowWorkAPolygon * double(prepared.mesh.polygons.size());
+  const double most =
+      std::max(kLittleExactRowWork, rays ? kExactRowWork * prepared.ray_estimate.rays
+                                         : a_hemicube * double(prepared.mesh.size()));
   if (wanted.empty() || pairs > kMostExactPairs) return;
   if (kPreparedWork * double(prepared.mesh.size()) > kPreparedShare * most) return;
   const Stopwatch watch;
+  const PatchMesh* mesh = &prepared.mesh;
+  if (!rays && mesh->clusters) {
+    mesh = &prepared.patches.emplace(*mesh);
+    prepared.patches->clusters.reset();
+  }
   progress.begin("preparing", ExactScene::kSteps);
-  LeadingRows& rows =
-      prepared.exact_rows.emplace(prepared.mesh, wanted, prepared.options, progress);
+  LeadingRows& rows = prepared.exact_rows.emplace(*mesh, wanted, prepared.options, progress);
   progress.end();
   const double preparing = watch.seconds();
   RowSample sample = rows.sample(progress);
   for (const double tolerance : kExactRowTolerances) {
-    rows.setTolerance(std::min(prepared.options.toleranceOf(FormFactorMethod::rays), tolerance));
+    rows.setTolerance(std::min(prepared.options.toleranceOf(plan.method), tolerance));
     if (rows.work(sample) > most) continue;
     plan.seconds += rows.seconds(sample, progress);
-    plan.bytes += rows.bytes() + KnownEntries::bytes(pairs);
-    prepared.seconds_rays += preparing;
+    // Hemicubes' own rows come after these.
+    const std::size_t making = rows.bytes();
+    plan.bytes =
+        rays ? plan.bytes + making : std::max(plan.bytes, prepared.options.memory_held + making);
+    plan.bytes += KnownEntries::bytes(std::min(double(pairs), sample.unoccluded + sample.occluded));
+    prepared.seconds_exact_rows = preparing;
     return;
   }
   prepared.exact_rows.reset();
 }
 
-void noteRowsByRays(const FormFactorPlan::Prepared& prepared, FormFactorReport& report) {
+void noteRowsLeftOut(const FormFactorPlan::Prepared& prepared, const char* by,
+                     FormFactorReport& report) {
   const std::size_t wanted = prepared.options.exact_rows.size();
   if (wanted == 0 || prepared.exact_rows) return;
   report.notes.push_back(
-      {Severity::info, fmt::format("rows of the {} {} that {} are by rays, as all others: exact "
+      {Severity::info, fmt::format("rows of the {} {} that {} are by {}, as all others: exact "
                                    "ones would take too long",
                                    countText(wanted), wanted == 1 ? "unknown" : "unknowns",
-                                   wanted == 1 ? "emits" : "emit")});
+                                   wanted == 1 ? "emits" : "emit", by)});
 }
 
 void planRays(FormFactorPlan::Prepared& prepared, FormFactorPlan& plan, Progress& progress) {
@@ -321,7 +357,7 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   requireUnknowns(options.exact_rows, mesh->unknowns());
   const Stopwatch watch;
   auto prepared = std::make_shared<FormFactorPlan::Prepared>(std::move(mesh), options);
-  if (options.onlyForSources()) prepared->options.exact_rows.clear();
+  if (options.onlyForSources() || !options.exact_emitters) prepared->options.exact_rows.clear();
   FormFactorPlan plan;
   switch (options.method) {
     case FormFactorMethod::automatic:
@@ -337,7 +373,7 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
       planHemicubes(*prepared, plan, progress);
       break;
   }
-  if (plan.method == FormFactorMethod::rays) planExactRows(*prepared, plan, progress);
+  if (plan.method != FormFactorMethod::exact) planExactRows(*prepared, plan, progress);
   prepared->seconds = watch.seconds();
   plan.prepared = std::move(prepared);
   return plan;
@@ -352,6 +388,12 @@ FormFactors exactOf(const FormFactorPlan::Prepared& prepared, const ExactScene& 
                                     prepared.options, progress, journal, processes);
   result.report.exact.seconds_prepare += prepared.seconds_exact;
   return result;
+}
+
+/// The rows that are exact beside rays or hemicubes; none if they were left out.
+std::vector<KnownRow> exactRows(const FormFactorPlan::Prepared& prepared, Progress& progress) {
+  if (!prepared.exact_rows) return {};
+  return prepared.exact_rows->compute(progress);
 }
 
 /// Exact form factors, unless they take far longer than foreseen. Time is that of processors, so
@@ -404,16 +446,18 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
       result = exactOf(prepared, *prepared.scene, *prepared.kernels, progress, journal, processes);
     }
   } else if (prepared.hemicubes) {
-    result = hemicubeFactors(prepared.mesh, *prepared.hemicubes, prepared.hemicube_estimate,
-                             prepared.options, progress, journal, processes);
+    result =
+        hemicubeFactors(prepared.mesh, *prepared.hemicubes, exactRows(prepared, progress),
+                        prepared.hemicube_estimate, prepared.options, progress, journal, processes);
+    noteRowsLeftOut(prepared, "hemicubes", result.report);
   } else if (prepared.rays) {
-    std::vector<KnownRow> known;
-    if (prepared.exact_rows) known = prepared.exact_rows->compute(progress);
+    std::vector<KnownRow> known = exactRows(prepared, progress);
     const double seconds_known = watch.seconds();
     result = rayFactors(prepared.mesh, *prepared.rays, std::move(known), prepared.ray_estimate,
                         prepared.options, progress, journal, processes);
-    result.report.rays.seconds_prepare = prepared.seconds_rays + seconds_known;
-    noteRowsByRays(prepared, result.report);
+    result.report.rays.seconds_prepare =
+        prepared.seconds_rays + prepared.seconds_exact_rows + seconds_known;
+    noteRowsLeftOut(prepared, "rays", result.report);
   } else {
     throw std::logic_error("this plan was not prepared");
   }
@@ -423,9 +467,9 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   FormFactorReport& report = result.report;
   report.method_reason = plan.reason;
   // What was prepared for the method is part of its work.
-  double preparing = 0;
-  if (plan.method == FormFactorMethod::exact) preparing = prepared.seconds_exact;
-  if (plan.method == FormFactorMethod::rays) preparing = prepared.seconds_rays;
+  double preparing = prepared.seconds_exact_rows;
+  if (plan.method == FormFactorMethod::exact) preparing += prepared.seconds_exact;
+  if (plan.method == FormFactorMethod::rays) preparing += prepared.seconds_rays;
   report.seconds_plan = prepared.seconds - preparing;
   report.estimated_seconds = preparing + plan.seconds;
   report.matrix_bytes = result.matrix.bytes();

@@ -200,6 +200,7 @@ StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_
     addTurns(key, options.random_turns);
     addEye(key, options.eye);
   }
+  if (!options.exact_emitters) key.add("emitters", "estimated");
   key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
   key.add("mesh", mesh_hash);
   return key;
@@ -353,6 +354,7 @@ FormFactorOptions factorOptionsOf(const StageKey& key) {
   options.sources_only = key.get("tolerance") == kOfSources;
   readNamed(key, "closure", kClosureNames, options.closure);
   options.near_exact = key.get("near") == "exact";
+  options.exact_emitters = key.get("emitters") != "estimated";
   read(key, "resolution", options.resolution);
   read(key, "seed", options.seed);
   read(key, "symmetrize", options.symmetrize);

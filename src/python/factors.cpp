@@ -28,6 +28,7 @@ FormFactorOptions factorOptions(const py::dict& given) {
   take.choice("eye", kEyeNames, options.eye);
   take("symmetrize", options.symmetrize);
   take("near_exact", options.near_exact);
+  take("exact_emitters", options.exact_emitters);
   take("memory_limit", options.memory_limit);
   take("memory_held", options.memory_held);
   take("scratch_folder", options.scratch_folder);

@@ -19,7 +19,8 @@ constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
     {"--solve-tolerance", "tolerance"},
     {"--heat-tolerance", "tolerance"},
     {"--gather-tolerance", "tolerance"},
-    {"--near", "near_exact"}};
+    {"--near", "near_exact"},
+    {"--emitters", "exact_emitters"}};
 
 bool isLetter(char c) { return c >= 'a' && c <= 'z'; }
 

@@ -60,9 +60,9 @@ py::dict dictOf(const ExactReport& report) {
 py::dict dictOf(const RayReport& report) {
   using R = RayReport;
   return Fields(report)("triangles", &R::triangles)("rays", &R::rays)("lost", &R::lost)(
-             "leaked", &R::leaked)("exact_rows", &R::exact_rows)("rounds", &R::rounds)(
-             "short_rows", &R::short_rows)("loosened_tolerance", &R::loosened_tolerance)(
-             "largest_row_figure", &R::largest_row_figure)
+             "leaked", &R::leaked)("rounds", &R::rounds)("short_rows", &R::short_rows)(
+             "loosened_tolerance", &R::loosened_tolerance)("largest_row_figure",
+                                                           &R::largest_row_figure)
       .dict();
 }
 
@@ -120,9 +120,10 @@ py::dict dictOf(const FormFactorReport& report) {
   py::dict dict =
       Fields(report)("method_reason", &R::method_reason)("hemicubes", &R::hemicubes)(
           "empty_rows", &R::empty_rows)("polygons", &R::polygons)("near_pairs", &R::near_pairs)(
-          "simd_target", &R::simd_target)("seconds", &R::seconds)("seconds_plan", &R::seconds_plan)(
-          "estimated_seconds", &R::estimated_seconds)("matrix_bytes", &R::matrix_bytes)(
-          "estimated_bytes", &R::estimated_bytes)("reciprocity_residual", &R::reciprocity_residual)(
+          "exact_rows", &R::exact_rows)("simd_target", &R::simd_target)("seconds", &R::seconds)(
+          "seconds_plan", &R::seconds_plan)("estimated_seconds", &R::estimated_seconds)(
+          "matrix_bytes", &R::matrix_bytes)("estimated_bytes", &R::estimated_bytes)(
+          "reciprocity_residual", &R::reciprocity_residual)(
           "largest_row_error", &R::largest_row_error)("error_figure", &R::error_figure)(
           "closed", &R::closed)("symmetrized", &R::symmetrized)("closure_enforced",
                                                                 &R::closure_enforced)

@@ -192,7 +192,6 @@ void describe(Archive& a, Described<Archive, RayReport>& r) {
   a("rounds", r.rounds);
   a("short_rows", r.short_rows);
   a("loosened_tolerance", r.loosened_tolerance);
-  a("exact_rows", r.exact_rows);
   a("largest_row_figure", r.largest_row_figure);
   a("seconds_prepare", r.seconds_prepare);
   a("seconds_cast", r.seconds_cast);
@@ -215,6 +214,7 @@ void describe(Archive& a, Described<Archive, FormFactorReport>& r) {
   a("pixels", r.pixels);
   a("near_pairs", r.near_pairs);
   a("capped", r.capped);
+  a("exact_rows", r.exact_rows);
   a("simd_target", r.simd_target);
   a("seconds", r.seconds);
   a("matrix_bytes", r.matrix_bytes);

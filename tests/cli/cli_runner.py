@@ -15,7 +15,8 @@ DATA = Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "data"
 HAS_PAGES = os.environ["RADIOSITY_PAGES"] == "1"
 
 # Small enough for a run to take a fraction of a second.
-SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32"]
+# Hemicubes as they see: the same as gathering at patches, whatever emits.
+SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32", "--emitters", "estimated"]
 
 BOX_MTL = """newmtl lamp
 Kd 0.2 0.2 0.2

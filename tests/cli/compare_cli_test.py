@@ -7,7 +7,7 @@ import numpy as np
 
 from cli_runner import DATA, CliTest
 
-SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32"]
+SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32", "--emitters", "estimated"]
 
 
 class Compare(CliTest):

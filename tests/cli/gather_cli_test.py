@@ -36,8 +36,8 @@ class Gather(CliTest):
     def test_gathering_in_a_closed_box_equals_the_matrix_solution(self):
         # Same eyes: with as many bounces both methods have the same light, to float rounding and
         # the tolerances (1e-6 of max E each; the lamp's E is 5 pi).
-        self.run_program("solve", "box.obj", *SMALL, "--method", "hemicube", "--solve-tolerance",
-                         "1e-7", "-o", "r.h5")
+        self.run_program("solve", "box.obj", *SMALL, "--method", "hemicube", "--emitters",
+                         "estimated", "--solve-tolerance", "1e-7", "-o", "r.h5")
         report = self.report("gather", "r.h5", "--at", "patches", "--resolution", "32",
                              "--gather-tolerance", "1e-6")
         self.assertEqual(report["stages"]["mesh"]["action"], "reused")

@@ -85,9 +85,9 @@ class DarkScenes(CliTest):
         self.write("box.obj", (self.folder / "box.obj").read_text().replace("o room", "o my room"))
         line = self.refuse("render", "box.obj", *SMALL, "--set", "lamp.radiance=0", "-o", "p.png")
         self.assertEqual(line, "radiosity: box.obj: nothing in the scene emits light, so the picture "
-                         f"would be black; make something a lamp: {PROGRAM} render box.obj --patches "
-                         "60 --method hemicube --resolution 32 --set lamp.radiance=0 -o p.png --set "
-                         "lamp.radiance=10 (W/m^2/sr), or light an open scene from outside: --sky 1")
+                         f"would be black; make something a lamp: {PROGRAM} render box.obj "
+                         f"{' '.join(SMALL)} --set lamp.radiance=0 -o p.png --set lamp.radiance=10 "
+                         "(W/m^2/sr), or light an open scene from outside: --sky 1")
         pasted = line.split("make something a lamp: ")[1].split(" (W/m^2/sr)")[0]
         subprocess.run(shlex.split(pasted), cwd=self.folder, check=True, capture_output=True)
         self.assertTrue((self.folder / "p.png").exists())

@@ -1,4 +1,4 @@
-// Exact rows of emitters beside rows by rays.
+// Exact rows of emitters beside rows by rays or hemicubes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,22 +21,32 @@ FormFactors byRays(const PatchMesh& mesh, const std::vector<Index>& exact_rows, 
   return test::computed(mesh, options);
 }
 
+FormFactors byHemicubes(const PatchMesh& mesh, const std::vector<Index>& exact_rows) {
+  FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
+  options.resolution = 64;
+  options.exact_rows = exact_rows;
+  return test::computed(mesh, options);
+}
+
+/// The share of some patches in the view of patch i.
+double shareOf(const FormFactors& factors, std::size_t i, const std::vector<Index>& seen) {
+  double sum = 0;
+  for (const Index e : seen) sum += factors.matrix.at(i, e);
+  return sum;
+}
+
 /// The share of some patches that each patch sees, over its true value: the largest difference, of
 /// patches that see a hundredth of the mean or more.
 double worstShare(const FormFactors& found, const FormFactors& truth,
                   const std::vector<Index>& seen) {
   const std::size_t n = truth.matrix.size();
-  const auto sumOf = [&](const FormFactors& of, std::size_t i) {
-    double sum = 0;
-    for (const Index e : seen) sum += of.matrix.at(i, e);
-    return sum;
-  };
   double mean = 0;
-  for (std::size_t i = 0; i < n; ++i) mean += sumOf(truth, i) / double(n);
+  for (std::size_t i = 0; i < n; ++i) mean += shareOf(truth, i, seen) / double(n);
   double worst = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const double is = sumOf(truth, i);
-    if (is >= 0.01 * mean) worst = std::max(worst, std::abs(sumOf(found, i) / is - 1));
+    const double is = shareOf(truth, i, seen);
+    if (is >= 0.01 * mean) worst = std::max(worst, std::abs(shareOf(found, i, seen) / is - 1));
   }
   return worst;
 }
@@ -52,8 +62,8 @@ TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
   constexpr double kTolerance = 5e-2;
   const FormFactors rays = byRays(mesh, {}, kTolerance);
   const FormFactors both = byRays(mesh, emitters, kTolerance);
-  EXPECT_FALSE(rays.report.rays.exact_rows);
-  EXPECT_EQ(both.report.rays.exact_rows, emitters.size());
+  EXPECT_FALSE(rays.report.exact_rows);
+  EXPECT_EQ(both.report.exact_rows, emitters.size());
   // No patch's direct light is to be off by more than this, whatever the tolerance.
   EXPECT_GT(worstShare(rays, truth, emitters), 0.05);
   EXPECT_LT(worstShare(both, truth, emitters), 0.05);
@@ -66,6 +76,55 @@ TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
     // The truth has a figure, too; single precision rounds to 6e-8.
     EXPECT_LE(std::sqrt(square), both.error[e] + truth.error[e] + 1e-7);
     EXPECT_LT(both.error[e], 0.2 * rays.error[e]);
+  }
+}
+
+TEST_P(ExactRows, GiveDirectLightThatHemicubesMiss) {
+  const Scene scene = test::dataScene(GetParam());
+  const PatchMesh mesh = test::meshOf(scene, 300);
+  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
+  const FormFactors seen = byHemicubes(mesh, {});
+  const FormFactors both = byHemicubes(mesh, emitters);
+  EXPECT_FALSE(seen.report.exact_rows);
+  EXPECT_EQ(both.report.exact_rows, emitters.size());
+  EXPECT_GT(worstShare(seen, truth, emitters), 0.05);
+  EXPECT_LT(worstShare(both, truth, emitters), 0.05);
+  std::vector<std::uint8_t> emits(mesh.size(), 0);
+  for (const Index e : emitters) emits[e] = 1;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (!(mesh.area[i] > 0)) continue;
+    EXPECT_NEAR(both.fronts[i] + both.backs[i] + both.sky[i], 1, 1e-12);
+    if (emits[i] != 0) continue;
+    EXPECT_NEAR(both.matrix.rowSums()[i], both.fronts[i], 1e-7);  // single precision
+    // All else that was seen keeps its proportions, backs and sky with the rest.
+    const double rest_seen = 1 - shareOf(seen, i, emitters);
+    const double rest_both = 1 - shareOf(both, i, emitters);
+    seen.matrix.forRow(i, [&](Index j, double value) {
+      if (emits[j] == 0) {
+        EXPECT_NEAR(both.matrix.at(i, j) / value, rest_both / rest_seen, 1e-6) << i << " " << j;
+      }
+    });
+    EXPECT_NEAR(both.sky[i] * rest_seen, seen.sky[i] * rest_both, 1e-7);
+  }
+}
+
+TEST_P(ExactRows, StayExactInAMergedMatrix) {
+  const Scene scene = test::dataScene(GetParam());
+  const PatchMesh mesh = test::meshOf(scene, 300);
+  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  FormFactorOptions options;
+  options.method = FormFactorMethod::hemicube;
+  options.resolution = 64;
+  options.exact_rows = emitters;
+  const FormFactors raw = test::computed(mesh, options);
+  options.symmetrize = true;
+  const FormFactors merged = test::computed(mesh, options);
+  for (const Index e : emitters) {
+    raw.matrix.forRow(e, [&](Index j, double value) {
+      // Closed rows are scaled to their sum, columns are not: by 1e-3 at most, the rows' tolerance.
+      EXPECT_NEAR(merged.matrix.at(e, j) / value, 1, 1e-3) << e << " " << j;
+    });
   }
 }
 
@@ -114,6 +173,8 @@ TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
   mesh.clusters = clusters;
   const std::vector<Index> wanted = {1, 7, Index(clusters.size() - 1)};
   const FormFactors f = byRays(mesh, wanted, 5e-2);
+  const FormFactors by_hemicubes = byHemicubes(mesh, wanted);
+  EXPECT_EQ(by_hemicubes.report.exact_rows, 9u);  // of patches
   for (const Index w : wanted) {
     double area = 0;
     std::vector<double> row(clusters.size(), 0.0);
@@ -129,6 +190,13 @@ TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
     // The truth is good to 1e-4 of the mean form factor a pair; patches are 3 a cluster.
     EXPECT_LT(std::sqrt(square), f.error[w] + 3e-4 / std::sqrt(double(mesh.size())));
     EXPECT_LT(f.error[w], 0.1 * 5e-2);  // of rays it would be 5e-2 of the norm, .3 or so
+    double hemicube_square = 0;
+    double norm = 0;
+    for (std::size_t l = 0; l < row.size(); ++l) {
+      hemicube_square += std::pow(by_hemicubes.matrix.at(w, l) - row[l] / area, 2);
+      norm += std::pow(row[l] / area, 2);
+    }
+    EXPECT_LT(std::sqrt(hemicube_square / norm), 1e-3);  // what exact is to hold in a row
   }
 }
 
@@ -138,16 +206,17 @@ TEST(ExactRowsOfTheOpen, TellSkyAndBacksFromFronts) {
   builder.grid("floor", {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, 2);
   builder.grid("plate", {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 1, 1);
   const PatchMesh mesh = builder.build();
-  const FormFactors f = byRays(mesh, {0, 1, 2, 3}, 1e-1);
-  double backs = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(f.fronts[i], 0);
-    EXPECT_NEAR(f.backs[i] + f.sky[i], 1, 1e-12);
-    backs += f.backs[i] / 4;
+  for (const FormFactors& f : {byRays(mesh, {0, 1, 2, 3}, 1e-1), byHemicubes(mesh, {0, 1, 2, 3})}) {
+    double backs = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(f.fronts[i], 0);
+      EXPECT_NEAR(f.backs[i] + f.sky[i], 1, 1e-12);
+      backs += f.backs[i] / 4;
+    }
+    // Two unit squares one apart, as the faces of a cube (Howell, "A Catalog of Radiation
+    // Configuration Factors", C-11); closed forms hold 1e-5.
+    EXPECT_NEAR(backs, 0.199824895698, 1e-5 * 0.2);
   }
-  // Two unit squares one apart, as the faces of a cube (Howell, "A Catalog of Radiation
-  // Configuration Factors", C-11); closed forms hold 1e-5.
-  EXPECT_NEAR(backs, 0.199824895698, 1e-5 * 0.2);
 }
 
 TEST(ExactRowsOfARoom, HaveTheSameBitsForAnyNumberOfThreads) {

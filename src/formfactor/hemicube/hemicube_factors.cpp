@@ -17,6 +17,7 @@
 #include "formfactor/hemicube/gpu_rows.h"
 #include "formfactor/hemicube/kept_row.h"
 #include "formfactor/hemicube/row_builder.h"
+#include "formfactor/known_entries.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/shared_rows.h"
 #include "mesh/clusters/canonical_order.h"
@@ -42,6 +43,7 @@ struct Worker {
 /// The rows of one computation.
 struct Rows {
   const HemicubeScene& scene;
+  const KnownEntries& known;  ///< by patch
   RowJournal* journal;
   FormFactors& result;
   std::vector<std::vector<SeenBack>>& seen_backs;
@@ -70,6 +72,59 @@ void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pai
   }
 }
 
+/// Puts the known entries into row i, and scales the rest. A row that is known whole is scaled to
+/// its account.
+void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
+  const auto entries = rows.known.at(i);
+  FormFactors& result = rows.result;
+  const double area = result.matrix.area()[i];
+  if (rows.known.empty() || !(area > 0)) return;
+  row.columns.clear();
+  row.values.clear();
+  std::vector<std::uint8_t> replaced;
+  auto next = entries.begin();
+  const auto addKnownBefore = [&](std::size_t end) {
+    for (; next != entries.end() && next->position < end; ++next) {
+      row.columns.push_back(next->position);
+      row.values.push_back(next->exchange / area);
+      replaced.push_back(1);
+    }
+  };
+  const bool whole = rows.known.rowAt(i) != nullptr;
+  double seen = 0;
+  result.matrix.forRow(i, [&](Index j, double value) {
+    if (whole || rows.known.rowAt(j) != nullptr) {
+      seen += value;
+      return;
+    }
+    addKnownBefore(j);
+    row.columns.push_back(j);
+    row.values.push_back(value);
+    replaced.push_back(0);
+  });
+  addKnownBefore(result.fronts.size());
+  if (whole) {
+    const RowAccount account = rows.known.account(i, area, result.sky[i] == 0);
+    result.fronts[i] = account.fronts;
+    result.backs[i] = account.backs;
+    result.sky[i] = account.sky;
+    rows.seen_backs[i] = rows.known.rowAt(i)->backs;
+    // All hemicubes' rows sum to what was seen, so that closed furnaces are uniform.
+    const double share = rows.known.share(i, area);
+    for (double& value : row.values) value *= account.fronts / share;
+  } else {
+    if (seen == 0 && entries.empty()) return;
+    const double rest = row.scaleRest(replaced, seen).rest;
+    // Not the sum of the stored values, which are rounded: accounts sum to 1.
+    const double share = std::min(1.0, rows.known.share(i, area));
+    result.fronts[i] = share + rest * (result.fronts[i] - seen);
+    result.backs[i] *= rest;
+    result.sky[i] *= rest;
+    for (SeenBack& back : rows.seen_backs[i]) back.share *= rest;
+  }
+  result.matrix.setRow(i, row.columns, row.values);
+}
+
 /// The number of rows that need not be made: empty ones and those in the journal.
 std::size_t rowsThere(const RowBuilder& rows, std::size_t n, RowJournal* journal) {
   std::size_t found = 0;
@@ -91,6 +146,7 @@ void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, const Hemicu
   storeRow(i, view, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
   counts.drawn = drawn;
   if (rows.journal != nullptr) keepRow(*rows.journal, i, rows.result, rows.seen_backs[i], counts);
+  replaceKnown(rows, i, store.row);
   store.counts += counts;
   rows.made[i] = 1;
 }
@@ -103,16 +159,18 @@ struct RowRange {
 
 /// Takes the rows that need not be made: empty ones and those in the journal.
 HemicubeRowCounts takeRows(Rows& rows, RowRange range, const Progress& progress) {
-  tbb::enumerable_thread_specific<HemicubeRowCounts> taken;
+  tbb::enumerable_thread_specific<RowStore> stores;
   parallelFor(range.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
     const std::size_t i = range.first + k;
-    rows.made[i] = rows.scene.rows.isEmpty(i) ||
-                   (rows.journal != nullptr &&
-                    takeRow(*rows.journal, i, rows.result, rows.seen_backs[i], taken.local()));
+    rows.made[i] = rows.scene.rows.isEmpty(i);
+    if (rows.made[i] != 0 || rows.journal == nullptr) return;
+    RowStore& store = stores.local();
+    rows.made[i] = takeRow(*rows.journal, i, rows.result, rows.seen_backs[i], store.counts) ? 1 : 0;
+    if (rows.made[i] != 0) replaceKnown(rows, i, store.row);
   });
   HemicubeRowCounts all;
-  for (const HemicubeRowCounts& counts : taken) all += counts;
+  for (const RowStore& store : stores) all += store.counts;
   return all;
 }
 
@@ -216,11 +274,28 @@ HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
   return all;
 }
 
-HemicubeRowCounts fillRows(const HemicubeScene& scene, RowJournal* journal, Processes* processes,
-                           FormFactors& result, std::vector<std::vector<SeenBack>>& seen_backs,
-                           Progress& progress) {
+/// The exchange known beforehand, by patch. Process 0 has it, the others get it.
+KnownEntries knownByPatch(std::vector<KnownRow> rows, std::size_t patches, Processes* processes) {
+  if (processes != nullptr) {
+    std::size_t count = rows.size();
+    processes->broadcastValue(count);
+    rows.resize(count);
+    for (KnownRow& row : rows) {
+      processes->broadcastValue(row.unknown);
+      processes->broadcastArray(row.entries);
+      processes->broadcastArray(row.backs);
+    }
+  }
+  std::vector<Index> position(patches);
+  std::iota(position.begin(), position.end(), Index(0));
+  return {std::move(rows), position};
+}
+
+HemicubeRowCounts fillRows(const HemicubeScene& scene, const KnownEntries& known,
+                           RowJournal* journal, Processes* processes, FormFactors& result,
+                           std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
   const std::size_t n = result.fronts.size();
-  Rows rows{scene, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
+  Rows rows{scene, known, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
   Workers workers([&] { return Worker{scene.rows.makeHemicube(), {}, {}}; });
   progress.begin("form factors", n, "rows", rowsThere(scene.rows, n, journal));
   HemicubeRowCounts counts;
@@ -266,8 +341,8 @@ FormFactors emptyRows(const PatchMesh& mesh, const FormFactorOptions& options,
 }
 
 /// The errors of a merged matrix's entries: their squares go with the exchange area, as in van
-/// Leersum's closure (closure.h). The unit keeps errors of F below 1.
-UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
+/// Leersum's closure (closure.h); known ones have none. The unit keeps errors of F below 1.
+UncertainEntries uncertainEntries(const ExchangeMatrix& matrix, const KnownEntries& known) {
   const std::size_t n = matrix.size();
   double smallest = std::numeric_limits<double>::infinity();
   for (const double a : matrix.area()) smallest = a > 0 ? std::min(smallest, a) : smallest;
@@ -279,6 +354,8 @@ UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
     std::vector<double> errors;
     for (std::size_t m = 0; m < upper.positions.size(); ++m) {
       if (upper.positions[m] == k) continue;
+      const Index other = matrix.order()[upper.positions[m]];
+      if (known.rowAt(matrix.order()[k]) != nullptr || known.rowAt(other) != nullptr) continue;
       later.push_back(upper.positions[m]);
       errors.push_back(std::sqrt(upper.factors[m] * share));
     }
@@ -287,12 +364,12 @@ UncertainEntries uncertainEntries(const ExchangeMatrix& matrix) {
   return uncertain;
 }
 
-void symmetrize(FormFactors& result, Progress& progress) {
+void symmetrize(const KnownEntries& known, FormFactors& result, Progress& progress) {
   constexpr double kTolerance = 1e-12;
   result.matrix = symmetrized(result.matrix);
   // The row sums to restore are the raw ones: 1 in a closed scene, the share seen in an open one.
-  result.report.closure = closeRows(result.matrix, uncertainEntries(result.matrix), result.fronts,
-                                    progress, kTolerance);
+  result.report.closure = closeRows(result.matrix, uncertainEntries(result.matrix, known),
+                                    result.fronts, progress, kTolerance);
   result.report.symmetrized = true;
 }
 
@@ -314,8 +391,9 @@ HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& opt
 }
 
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
-                            const HemicubeEstimate& estimate, const FormFactorOptions& options,
-                            Progress& progress, RowJournal* journal, Processes* processes) {
+                            std::vector<KnownRow> known_rows, const HemicubeEstimate& estimate,
+                            const FormFactorOptions& options, Progress& progress,
+                            RowJournal* journal, Processes* processes) {
   const std::size_t n = mesh.size();
   const RowMemory memory = processes != nullptr
                                ? shareOf(estimate.memory, estimate.matrix_bytes, processes->size())
@@ -325,8 +403,10 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   report.polygons = mesh.polygons.size();
   report.simd_target = scene.rows.kernels().target;
   report.estimated_bytes = memory.bytes;
+  if (!options.exact_rows.empty()) report.exact_rows = known_rows.size();
+  const KnownEntries known = knownByPatch(std::move(known_rows), n, processes);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  reportCounts(fillRows(scene, journal, processes, result, seen_backs, progress), n, report);
+  reportCounts(fillRows(scene, known, journal, processes, result, seen_backs, progress), n, report);
   if (processes != nullptr) {
     result.matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(
         *processes, std::move(result.matrix), [&progress] { progress.check(); }));
@@ -343,7 +423,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   report.reciprocity_residual = reciprocityResidual(result.matrix);
   step();
   progress.end();
-  if (options.symmetrize) symmetrize(result, progress);
+  if (options.symmetrize) symmetrize(known, result, progress);
   return result;
 }
 
@@ -353,7 +433,8 @@ ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOpti
   const HemicubeScene scene(mesh, options);
   FormFactors result = emptyRows(mesh, options, nullptr);
   std::vector<std::vector<SeenBack>> seen_backs(mesh.size());
-  fillRows(scene, journal, &processes, result, seen_backs, progress);
+  const KnownEntries known = knownByPatch({}, mesh.size(), &processes);
+  fillRows(scene, known, journal, &processes, result, seen_backs, progress);
   return std::move(result.matrix);
 }
 

@@ -9,6 +9,7 @@
 #include "formfactor/hemicube/gpu_eye.h"
 #include "formfactor/hemicube/near_pairs.h"
 #include "formfactor/hemicube/row_builder.h"
+#include "formfactor/known_rows.h"
 #include "formfactor/row_memory.h"
 #include "radiosity/form_factors.h"
 
@@ -32,11 +33,13 @@ struct HemicubeEstimate {
 HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& scene,
                                    const FormFactorOptions& options, Progress& progress);
 
-/// Raw rows, as they were seen, unless `symmetrize`. See computeFormFactors(). `scene` is the
-/// mesh's, `estimate` the scene's; `journal` and `processes` may be null.
+/// Raw rows, as they were seen but for the exchange in `known`, rows of patches, unless
+/// `symmetrize`. See computeFormFactors(). `scene` is the mesh's, `estimate` the scene's;
+/// `journal`, which keeps what was seen, and `processes` may be null.
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
-                            const HemicubeEstimate& estimate, const FormFactorOptions& options,
-                            Progress& progress, RowJournal* journal, Processes* processes);
+                            std::vector<KnownRow> known, const HemicubeEstimate& estimate,
+                            const FormFactorOptions& options, Progress& progress,
+                            RowJournal* journal, Processes* processes);
 
 /// For the other processes, while process 0 is in hemicubeFactors(): makes the rows of this one.
 ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,

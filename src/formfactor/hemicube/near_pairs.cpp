@@ -66,37 +66,18 @@ double NearPairs::corrected(std::size_t i, std::size_t j, double seen) const {
 NearPairs::Outcome NearPairs::correct(std::size_t patch, PackedRow& row) const {
   Outcome outcome;
   double near_seen = 0;
-  double near_exact = 0;
   std::vector<std::uint8_t> replaced(row.columns.size(), 0);
   for (std::size_t k = 0; k < row.columns.size(); ++k) {
     if (!near(patch, row.columns[k])) continue;
     near_seen += row.values[k];
     row.values[k] = corrected(patch, row.columns[k], row.values[k]);
-    near_exact += row.values[k];
     replaced[k] = 1;
     ++outcome.replaced;
   }
   if (outcome.replaced == 0) return outcome;
-  double cap = 1;
-  if (near_exact > 1) {
-    cap = 1 / near_exact;
-    near_exact = 1;
-    ++outcome.capped;
-  }
-  // The rest, backs and sky had 1 - near_seen together.
-  outcome.rest = near_seen < 1 ? (1 - near_exact) / (1 - near_seen) : 1.0;
-  for (std::size_t k = 0; k < row.columns.size(); ++k) {
-    row.values[k] *= replaced[k] != 0 ? cap : outcome.rest;
-  }
-  // An entry may have become 0: such entries are not stored.
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < row.columns.size(); ++k) {
-    if (!(row.values[k] > 0)) continue;
-    row.columns[kept] = row.columns[k];
-    row.values[kept++] = row.values[k];
-  }
-  row.columns.resize(kept);
-  row.values.resize(kept);
+  const PackedRow::Scaled scaled = row.scaleRest(replaced, near_seen);
+  outcome.rest = scaled.rest;
+  outcome.capped = scaled.capped ? 1 : 0;
   return outcome;
 }
 

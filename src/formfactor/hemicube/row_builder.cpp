@@ -86,4 +86,28 @@ void PackedRow::pack(const HemicubeView& view, std::size_t patches) {
   }
 }
 
+PackedRow::Scaled PackedRow::scaleRest(const std::vector<std::uint8_t>& replaced, double seen) {
+  double now = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) now += replaced[k] != 0 ? values[k] : 0.0;
+  Scaled scaled;
+  double cap = 1;
+  if (now > 1) {
+    cap = 1 / now;
+    now = 1;
+    scaled.capped = true;
+  }
+  // The rest, backs and sky had 1 - seen together.
+  scaled.rest = seen < 1 ? (1 - now) / (1 - seen) : 1.0;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const double value = values[k] * (replaced[k] != 0 ? cap : scaled.rest);
+    if (!(value > 0)) continue;
+    columns[kept] = columns[k];
+    values[kept++] = value;
+  }
+  columns.resize(kept);
+  values.resize(kept);
+  return scaled;
+}
+
 }  // namespace radiosity

@@ -71,6 +71,15 @@ struct PackedRow {
   std::vector<Index> columns;
   std::vector<double> values;
   void pack(const HemicubeView& view, std::size_t patches);
+
+  struct Scaled {
+    double rest = 1;      ///< factor of the other entries, backs and sky
+    bool capped = false;  ///< the replaced entries alone exceeded 1: scaled down to it
+  };
+  /// Scales a row that summed to 1 with backs and sky before entries were replaced, so that it does
+  /// again: the rest keeps its proportions. `replaced`: by entry; `seen`: the sum of these before.
+  /// Entries of 0 are dropped.
+  Scaled scaleRest(const std::vector<std::uint8_t>& replaced, double seen);
 };
 
 }  // namespace radiosity

@@ -22,17 +22,6 @@ namespace {
 /// The tolerance to which single precision can restore rows.
 constexpr double kClosureTolerance = 1e-9;
 
-/// The account of a row that rests on no rays. In a closed scene its fronts are 1 less its backs.
-void setKnownAccount(const KnownEntries& known, std::size_t k, Index i, double area,
-                     FormFactors& result, std::vector<SeenBack>& seen_backs) {
-  for (const KnownEntries::Entry& entry : known.at(k)) result.fronts[i] += entry.exchange / area;
-  seen_backs = known.rowAt(k)->backs;
-  for (const SeenBack& back : seen_backs) result.backs[i] += back.share;
-  const double rest = std::max(0.0, 1 - result.backs[i]);
-  result.fronts[i] = result.report.closed ? rest : std::min(rest, result.fronts[i]);
-  result.sky[i] = rest - result.fronts[i];
-}
-
 /// The error of the sky's share of a row: the spread of its rays, and at least one ray, since a row
 /// that saw no sky may have missed it.
 double skyError(double sky, double each) {
@@ -52,16 +41,17 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
     const Index i = scene.order()[k];
     if (!(row.counted() > 0)) return;
     if (known.rowAt(k) != nullptr) {
-      setKnownAccount(known, k, i, scene.area()[k], result, seen_backs[i]);
+      const RowAccount account = known.account(k, scene.area()[k], result.report.closed);
+      result.fronts[i] = account.fronts;
+      result.backs[i] = account.backs;
+      result.sky[i] = account.sky;
+      seen_backs[i] = known.rowAt(k)->backs;
       for (const KnownEntries::Entry& entry : known.at(k)) {
         sky_error[i] += entry.error / scene.area()[k];
       }
       return;
     }
-    double known_share = 0;
-    for (const KnownEntries::Entry& entry : known.at(k)) {
-      known_share += entry.exchange / scene.area()[k];
-    }
+    const double known_share = known.share(k, scene.area()[k]);
     double counted = row.counted();
     for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < n; ++e) {
       if (known.rowAt(row.columns[e]) == nullptr) continue;
@@ -217,7 +207,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
   report.rays.triangles = scene.caster().triangles();
-  if (!options.exact_rows.empty()) report.rays.exact_rows = rows_known.size();
+  if (!options.exact_rows.empty()) report.exact_rows = rows_known.size();
   const KnownEntries known(std::move(rows_known), scene.position());
 
   RayAim aim(options);

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/rays/known_entries.h"
+#include "formfactor/known_entries.h"
 #include "formfactor/rays/row_accuracy.h"
 #include "radiosity/base.h"
 #include "radiosity/scratch_memory.h"

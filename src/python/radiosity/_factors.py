@@ -257,7 +257,7 @@ def _resident_bytes() -> int:
 def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str = "auto",
                  closure: str = "report", precision: Optional[str] = None, resolution: int = 256,
                  eye: str = "cpu", seed: int = 1, near_exact: bool = False,
-                 symmetrize: bool = False, memory_limit: int = 0,
+                 symmetrize: bool = False, exact_emitters: bool = True, memory_limit: int = 0,
                  scratch_folder: Union[str, "os.PathLike[str]"] = "",
                  progress: Progress = None) -> FormFactors:
     """Computes the form factors of a mesh.
@@ -267,6 +267,7 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
     double (default: single unless the tolerance asks for more). memory_limit: bytes, 0: none; beyond
     it rows are kept in scratch_folder, where one is given. seed: of the directions of rays and of the
     turns of hemicubes about their normals; another one gives another sample of the same quality.
+    exact_emitters: form factors to and from what emits are exact, also beside rays and hemicubes.
 
     Of hemicubes alone: resolution, pixels along an edge, even, 16 to 4096. eye: who draws them: cpu
     (the same bits on every machine), gl (OpenGL) or auto (OpenGL where there is hardware for it).
@@ -285,7 +286,7 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
     require("mesh", mesh, Mesh, "a Mesh: rad.mesh(scene)")
     options = dict(tolerance=tolerance, method=method, closure=closure, precision=precision,
                    resolution=resolution, eye=eye, seed=seed, near_exact=near_exact,
-                   symmetrize=symmetrize, memory_limit=memory_limit,
+                   symmetrize=symmetrize, exact_emitters=exact_emitters, memory_limit=memory_limit,
                    scratch_folder=path_text("scratch_folder", scratch_folder) if scratch_folder else "",
                    memory_held=_resident_bytes() if memory_limit else 0)
     with reporting(progress) as report:

@@ -1,4 +1,4 @@
-#include "formfactor/rays/known_entries.h"
+#include "formfactor/known_entries.h"
 
 #include <algorithm>
 #include <utility>
@@ -25,6 +25,21 @@ KnownEntries::KnownEntries(std::vector<KnownRow> rows, std::span<const Index> po
     std::sort(entries.begin(), entries.end(),
               [](const Entry& a, const Entry& b) { return a.position < b.position; });
   }
+}
+
+double KnownEntries::share(std::size_t position, double area) const {
+  double sum = 0;
+  for (const Entry& entry : at(position)) sum += entry.exchange / area;
+  return sum;
+}
+
+RowAccount KnownEntries::account(std::size_t position, double area, bool closed) const {
+  RowAccount account;
+  for (const SeenBack& back : rowAt(position)->backs) account.backs += back.share;
+  const double rest = std::max(0.0, 1 - account.backs);
+  account.fronts = closed ? rest : std::min(rest, share(position, area));
+  account.sky = rest - account.fronts;
+  return account;
 }
 
 std::uint64_t KnownEntries::identity() const {

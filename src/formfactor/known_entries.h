@@ -10,7 +10,14 @@
 
 namespace radiosity {
 
-/// The pairs that need no rays: all of some rows, and their columns in all others.
+/// Fronts, backs and sky of a row.
+struct RowAccount {
+  double fronts = 0;
+  double backs = 0;
+  double sky = 0;
+};
+
+/// The pairs that need no estimate: all of some rows, and their columns in all others.
 class KnownEntries {
  public:
   struct Entry {
@@ -33,12 +40,18 @@ class KnownEntries {
     return empty() ? std::span<const Entry>() : std::span<const Entry>(entries_[position]);
   }
 
+  /// What a row of `area` m^2 sees of known unknowns: the sum of its known form factors.
+  double share(std::size_t position, double area) const;
+  /// The account of a row that is known whole. If it is `closed`, without sky, its fronts are 1
+  /// less its backs.
+  RowAccount account(std::size_t position, double area, bool closed) const;
+
   /// A number that is the same for the same rows.
   std::uint64_t identity() const;
 
-  /// Bytes held by this for `pairs` pairs.
-  static std::size_t bytes(std::size_t pairs) {
-    return 2 * pairs * (sizeof(Entry) + sizeof(KnownExchange));
+  /// Bytes held by this for `pairs` pairs with exchange.
+  static std::size_t bytes(double pairs) {
+    return std::size_t(pairs * (2 * sizeof(Entry) + sizeof(KnownExchange)));
   }
 
  private:
