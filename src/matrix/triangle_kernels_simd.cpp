@@ -5,8 +5,6 @@
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 
-// Vectors without a fixed size cannot be array elements.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "matrix/triangle_kernels_simd.cpp"
 #include <hwy/foreach_target.h>
