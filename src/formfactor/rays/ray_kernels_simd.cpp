@@ -70,7 +70,10 @@ void scramble(const std::uint32_t* first, std::size_t count, std::uint32_t base,
     if (k + lanes <= count) {
       hn::StoreU(point, df, out + k);
     } else {
-      hn::BlendedStore(point, hn::FirstN(df, count - k), df, out + k);
+      // Not BlendedStore, which may write old values beyond.
+      alignas(64) float last[kRayLanes];
+      hn::Store(point, df, last);
+      for (std::size_t m = k; m < count; ++m) out[m] = last[m - k];
     }
   }
 }
