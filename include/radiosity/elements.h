@@ -23,7 +23,8 @@ struct ElementOptions {
   double tolerance = 0.01;
   /// 1e-5 to 0.1 of the scene's diagonal: no element with a shorter edge is cut.
   double smallest_edge = 0.002;
-  /// 1 or more, in each field. At this limit the elements that promise least stay coarse.
+  /// 1 or more, in each field, besides the corners of patches. At this limit the elements that
+  /// promise least stay coarse.
   std::size_t most_vertices = 400000;
   /// Rays per vertex in the second pass: a power of two, 64 to 4096. The first takes a quarter.
   int rays = 512;

@@ -48,7 +48,8 @@ class FieldBuilder {
         stage_(stage),
         progress_(progress),
         points_(surface.points),
-        edges_(surface.edges) {}
+        edges_(surface.edges),
+        most_points_(points_.size() + rule.most_vertices) {}
 
   FieldSummary build() {
     std::vector<Node> nodes = roots();
@@ -212,7 +213,7 @@ class FieldBuilder {
                          edge > rule_.steep_fraction * smallest;
       node.tested =
           !isDark(node) && ((edge > smallest && (node.forced || found >= spread)) || steep);
-      if (node.tested && points_.size() + 5 > rule_.most_vertices) {
+      if (node.tested && points_.size() + 5 > most_points_) {
         node.tested = false;
         ++out_.unrefined;
       }
@@ -315,9 +316,7 @@ class FieldBuilder {
     for (Index k = 0; k < nodes.size(); ++k) {
       if (nodes[k].wants_cut) wanting.push_back(k);
     }
-    const std::size_t left =
-        rule_.most_vertices > points_.size() ? rule_.most_vertices - points_.size() : 0;
-    const std::size_t most = left / kNewVertices;
+    const std::size_t most = (most_points_ - points_.size()) / kNewVertices;
     if (wanting.size() <= most) return;
     std::sort(wanting.begin(), wanting.end(), [&](Index a, Index b) {
       const double first = nodes[a].error * edgeOf(nodes[a]);
@@ -452,6 +451,7 @@ class FieldBuilder {
   Progress& progress_;
   std::vector<SurfacePoint> points_;
   EdgeMap edges_;
+  std::size_t most_points_;
   std::vector<Index> root_of_;  ///< of each element
   std::vector<double> noise_;   ///< V
   /// A vertex to evaluate.

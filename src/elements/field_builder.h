@@ -68,7 +68,7 @@ struct RefinementRule {
   std::span<const double> other_light;
   /// N * bands: light of the patches, for points behind a surface.
   std::span<const double> patch_light;
-  std::size_t most_vertices = 0;
+  std::size_t most_vertices = 0;  ///< besides the corners of roots
   /// Facets of curved bodies are small already; they are tested only if their corners differ by
   /// this many times `least_spread`.
   double curved_spread = 1;

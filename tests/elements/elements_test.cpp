@@ -449,9 +449,23 @@ TEST(Elements, UnwantedPatchesAreLeftOut) {
 }
 
 TEST(Elements, TheNumberOfVerticesIsBounded) {
+  const Lit corners(lampBehindBar(0.1), 200, {.tolerance = 0.001, .most_vertices = 1});
   const Lit lit(lampBehindBar(0.1), 200, {.tolerance = 0.001, .most_vertices = 2000});
-  EXPECT_LE(lit.elements.direct.vertices, 2000u);
+  EXPECT_LE(lit.elements.direct.vertices, corners.elements.direct.vertices + 2000);
+  EXPECT_GT(lit.elements.direct.vertices, corners.elements.direct.vertices + 1000);
   EXPECT_GT(lit.elements.report.unrefined, 0u);
+}
+
+TEST(Elements, ManySmallPatchesLeaveOthersTheirVertices) {
+  const auto with = [](std::size_t most) {
+    return Lit(lampBehindBar(0.1), 8000, {.smallest_edge = 0.005, .most_vertices = most});
+  };
+  const std::size_t corners = with(1).elements.direct.vertices;
+  const std::size_t added = with(1'000'000).elements.direct.vertices - corners;
+  ASSERT_GT(corners, 1000u);
+  ASSERT_GT(added, 1000u);
+  // A cut takes up to 16 vertices.
+  EXPECT_EQ(with(added + 16).elements.report.unrefined, 0u);
 }
 
 TEST(Elements, OptionsOutOfRangeAreRefusedByName) {
