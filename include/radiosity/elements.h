@@ -80,6 +80,8 @@ enum class DirectLight {
 struct ElementReport {
   DirectLight direct = DirectLight::none;
   std::size_t roots = 0;
+  /// Of these, on small patches that are not wanted: sources with the light of the solution.
+  std::size_t as_solved = 0;
   std::size_t emitters = 0;           ///< convex pieces
   std::size_t direct_vertices = 0;    ///< evaluated
   std::size_t direct_by_rays = 0;     ///< of these, by rays to the emitters
@@ -112,7 +114,8 @@ struct Elements {
 /// Direct light is exact, point to polygon, with blocked parts clipped off. Indirect light is found
 /// by rays in two passes; the elements of the first pass are the sources of the second. `wanted`: N
 /// flags, 1: the patch's elements are wanted; empty: all. Other patches are evaluated only as far
-/// as wanted ones receive light from them. The same bits for any number of threads. Errors:
+/// as wanted ones receive light from them; those with edges below 1/200 of the scene's diagonal not
+/// at all. The same bits for any number of threads. Errors:
 /// InputError for options out of range and sizes that do not match. Throws Cancelled.
 Elements computeElements(const PatchMesh& mesh, const PatchMaterials& materials,
                          std::span<const double> irradiance, const ElementOptions& options,

@@ -47,6 +47,7 @@ void summarizeElements(Report& report, const Elements& elements, const FormFacto
   report.section("elements", "Elements");
   report.text("direct", "direct light", directText(r.direct));
   report.count("emitters", "emitters", r.emitters);
+  report.count("as_solved", "small parts out of view, as solved", r.as_solved);
   report.count("direct_vertices", "vertices evaluated, direct", r.direct_vertices);
   report.count("direct_by_rays", "  of them by rays", r.direct_by_rays);
   report.count("indirect_vertices", "vertices evaluated, indirect", r.indirect_vertices);

@@ -9,7 +9,6 @@
 #include "elements/light_sources.h"
 
 namespace radiosity {
-namespace {}  // namespace
 
 void ElementOptions::validate() const {
   requireWithin("elements: tolerance", tolerance, 1e-4, 0.5);

@@ -74,8 +74,11 @@ class FieldBuilder {
   const SurfacePoint& point(Index v) const { return points_[v]; }
   double* value(Index v) { return out_.field.values.data() + v * bands_; }
 
-  bool isWanted(Index root) const { return rule_.wanted.empty() || rule_.wanted[root] != 0; }
-  bool isLeftOut(Index root) const { return !isWanted(root) && std::isinf(rule_.unwanted_edge); }
+  RootUse useOf(Index root) const { return rule_.use.empty() ? RootUse::shown : rule_.use[root]; }
+  bool isShown(Index root) const { return useOf(root) == RootUse::shown; }
+  bool isLeftOut(Index root) const {
+    return rule_.shown_alone ? !isShown(root) : useOf(root) == RootUse::none;
+  }
 
   double edgeOf(const Node& node) const {
     double longest = 0;
@@ -204,12 +207,12 @@ class FieldBuilder {
       const double edge = edgeOf(node);
       const bool partial = node.lights && node.lights->kind == ElementLights::Kind::partial;
       node.forced = edge > rule_.longest_edge || (partial && edge > rule_.partial_edge);
-      double smallest = isWanted(node.root) ? rule_.smallest_edge : rule_.unwanted_edge;
+      double smallest = isShown(node.root) ? rule_.smallest_edge : rule_.source_edge;
       if (isDear(node)) smallest = std::max(smallest, rule_.dear_edge);
       const double spread =
           rule_.least_spread * (surface_.curved[node.root] != 0 ? rule_.curved_spread : 1);
       const double found = spreadOf(node);
-      const bool steep = found > rule_.steep_spread && isWanted(node.root) &&
+      const bool steep = found > rule_.steep_spread && isShown(node.root) &&
                          edge > rule_.steep_fraction * smallest;
       node.tested =
           !isDark(node) && ((edge > smallest && (node.forced || found >= spread)) || steep);
@@ -383,7 +386,7 @@ class FieldBuilder {
   void conform() {
     for (std::size_t e = 0; e < out_.field.elements.size(); ++e) {
       const Element& element = out_.field.elements[e];
-      if (element.first_child != kNone || element.corners == 0 || !isWanted(root_of_[e])) continue;
+      if (element.first_child != kNone || element.corners == 0 || !isShown(root_of_[e])) continue;
       const Index* p = out_.field.points.data() + element.first_point;
       const std::size_t n = element.corners;
       const bool root = e < surface_.roots.size();
@@ -405,7 +408,7 @@ class FieldBuilder {
     out_.shortest_edge = surface_.diagonal;
     for (Index e = 0; e < out_.field.elements.size(); ++e) {
       const Element& element = out_.field.elements[e];
-      if (element.first_child == kNone && element.corners != 0 && isWanted(root_of_[e])) {
+      if (element.first_child == kNone && element.corners != 0 && isShown(root_of_[e])) {
         measureLeaf(element, root_of_[e]);
       }
     }

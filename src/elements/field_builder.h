@@ -46,6 +46,13 @@ class FieldLight {
                             std::span<double> out) const = 0;
 };
 
+/// What a root's light is for.
+enum class RootUse : std::uint8_t {
+  shown,   ///< itself
+  source,  ///< light that others get of it
+  none     ///< nothing: it is not evaluated
+};
+
 /// The rules by which elements are cut.
 struct RefinementRule {
   double tolerance = 0.01;
@@ -72,11 +79,11 @@ struct RefinementRule {
   /// Facets of curved bodies are small already; they are tested only if their corners differ by
   /// this many times `least_spread`.
   double curved_spread = 1;
-  /// R, 1: wanted in full; empty: all are. Other roots are cut only down to `unwanted_edge`
-  /// (metres) and do not change the edges that they share with wanted ones; infinite: they are not
-  /// evaluated.
-  std::span<const std::uint8_t> wanted;
-  double unwanted_edge = 0;
+  /// R; empty: all are shown. Sources are cut only down to `source_edge` (metres) and do not change
+  /// the edges that they share with roots that are shown.
+  std::span<const RootUse> use;
+  double source_edge = 0;
+  bool shown_alone = false;  ///< sources are not evaluated
   /// A root with longer edges is cut for any values.
   double longest_edge = 0;
   bool keep_lights = false;  ///< FieldSummary::lights are wanted

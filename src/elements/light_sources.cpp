@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 #include <optional>
 
 #include "base/parallel.h"
@@ -28,7 +27,8 @@ constexpr Inset kIndirectInset{0.0015, 0.21};
 constexpr double kReferenceEdge = 0.05;
 /// The longest edge of elements that may be shaded.
 constexpr double kPartialEdge = 0.0125;
-/// Direct light that only serves as a source is not refined below this.
+/// Direct light that only serves as a source is not refined below this. Patches with shorter edges
+/// that are not shown are sources with the light of the solution.
 constexpr double kSourceEdge = 0.005;
 /// The longest edge of elements; longer roots are cut.
 constexpr double kLongestEdge = 0.04;
@@ -105,6 +105,16 @@ std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
   return means;
 }
 
+double longestEdge(const PatchMesh& mesh, std::size_t patch) {
+  const auto outline = mesh.outline(patch);
+  double longest = 0;
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    longest = std::max(longest, glm::distance(mesh.vertices[outline[k]],
+                                              mesh.vertices[outline[(k + 1) % outline.size()]]));
+  }
+  return longest;
+}
+
 bool sharesUnknown(const PatchMesh& mesh, std::size_t patch) {
   return mesh.clusters && mesh.clusters->patchesOf(mesh.clusters->of_patch[patch]).size() > 1;
 }
@@ -148,9 +158,7 @@ LightSources::LightSources(const PatchMesh& mesh, const PatchMaterials& material
     area += mesh.area[i];
   }
   mean_light_ = area > 0 ? sum / area : 0;
-  for (const Index patch : surface_.roots.patch) {
-    if (!wanted.empty()) wanted_.push_back(wanted[patch]);
-  }
+  findUses(wanted);
   report_.roots = surface_.roots.size();
   const double edge = 0.5 * options_.smallest_edge * surface_.diagonal;
   report_.uniform_vertices = edge > 0 ? area / (edge * edge) : 0;
@@ -160,6 +168,27 @@ LightSources::LightSources(const PatchMesh& mesh, const PatchMaterials& material
   const Stopwatch indirect;
   findSources();
   report_.seconds_indirect = indirect.seconds();
+}
+
+void LightSources::findUses(std::span<const std::uint8_t> wanted) {
+  if (wanted.empty()) return;
+  use_.resize(surface_.roots.size());
+  parallelFor(mesh_.size(), 1024, [&](std::size_t i) {
+    RootUse use = RootUse::shown;
+    if (wanted[i] == 0) {
+      const bool small = longestEdge(mesh_, i) < kSourceEdge * surface_.diagonal;
+      use = small ? RootUse::none : RootUse::source;
+    }
+    const auto& of_patch = surface_.roots.of_patch;
+    std::fill(use_.begin() + std::ptrdiff_t(of_patch[i]),
+              use_.begin() + std::ptrdiff_t(of_patch[i + 1]), use);
+  });
+  report_.as_solved = std::size_t(std::ranges::count(use_, RootUse::none));
+}
+
+bool LightSources::isLeftOut(std::size_t patch) const {
+  const std::size_t root = surface_.roots.of_patch[patch];
+  return root < use_.size() && use_[root] == RootUse::none;
 }
 
 RefinementRule LightSources::rule(double tolerance, double smallest) const {
@@ -175,8 +204,8 @@ RefinementRule LightSources::rule(double tolerance, double smallest) const {
   rule.reference_edge = kReferenceEdge * surface_.diagonal;
   rule.least_light = kLeastLight * mean_light_;
   rule.most_vertices = options_.most_vertices;
-  rule.wanted = wanted_;
-  rule.unwanted_edge = kSourceEdge * surface_.diagonal;
+  rule.use = use_;
+  rule.source_edge = kSourceEdge * surface_.diagonal;
   return rule;
 }
 
@@ -243,8 +272,7 @@ void LightSources::findSources() {
   const auto direct_at = [&](std::size_t root, Vec2 at, std::span<double> sum) {
     lookup_.add(direct_.field, root, at, sum);
   };
-  const int first_rays =
-      raysFor(kFirstShare * double(surface_.points.size()), std::max(16, options_.rays / 4));
+  const int first_rays = raysFor(kFirstShare * corners(false), std::max(16, options_.rays / 4));
   FieldSummary first;
   {
     const SourceMap sources(surface_, lookup_, materials_, emission,
@@ -262,7 +290,9 @@ void LightSources::findSources() {
   // its unknown the solution has only a fit, and the first pass is better.
   std::vector<double> lift = patchMeans(mesh_, surface_.roots, lookup_, first.field, bands_);
   for (std::size_t k = 0; k < lift.size(); ++k) {
-    lift[k] = sharesUnknown(mesh_, k / bands_) ? 0.0 : indirect_[k] - lift[k];
+    const std::size_t patch = k / bands_;
+    const bool fit = sharesUnknown(mesh_, patch) && !isLeftOut(patch);
+    lift[k] = fit ? 0.0 : indirect_[k] - lift[k];
   }
   sources_ = std::make_unique<SourceMap>(surface_, lookup_, materials_, emission,
                                          [&](std::size_t root, Vec2 at, std::span<double> sum) {
@@ -277,7 +307,7 @@ void LightSources::findSources() {
 
 ElementField LightSources::indirectField() {
   const Stopwatch watch;
-  const int rays = raysFor(kTestedShare * wantedCorners(), options_.rays);
+  const int rays = raysFor(kTestedShare * corners(true), options_.rays);
   // With Owen-scrambled points 1,024 rays have an error of about 1%.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
   FieldSummary second =
@@ -290,12 +320,12 @@ ElementField LightSources::indirectField() {
   return std::move(second.field);
 }
 
-/// Vertices at corners of wanted roots.
-double LightSources::wantedCorners() const {
-  if (wanted_.empty()) return double(surface_.points.size());
+/// Vertices at corners of roots that are shown, or of all that are evaluated.
+double LightSources::corners(bool shown_alone) const {
+  if (use_.empty()) return double(surface_.points.size());
   std::vector<std::uint8_t> counted(surface_.points.size(), 0);
-  for (std::size_t r = 0; r < wanted_.size(); ++r) {
-    if (wanted_[r] == 0) continue;
+  for (std::size_t r = 0; r < use_.size(); ++r) {
+    if (use_[r] == RootUse::none || (shown_alone && use_[r] == RootUse::source)) continue;
     for (const Index v : surface_.vertex[r]) {
       if (v != kNone) counted[v] = 1;
     }
@@ -304,12 +334,11 @@ double LightSources::wantedCorners() const {
 }
 
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
-                                   bool wanted_only) {
+                                   bool shown_alone) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
   // Only for the second pass; so many that all points could take them within a fourth of most_rays.
   const int more_rays =
-      wanted_only ? raysFor(4 * kTestedShare * wantedCorners(), std::min(kMoreRays * rays, 4096))
-                  : 0;
+      shown_alone ? raysFor(4 * kTestedShare * corners(true), std::min(kMoreRays * rays, 4096)) : 0;
   std::optional<HemisphereSet> more;
   ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.sky, options_.seed);
   if (more_rays > rays) {
@@ -319,13 +348,13 @@ FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double to
   RefinementRule how = rule(tolerance, kIndirectEdge);
   how.least_spread = kTestedSpread * tolerance;
   how.curved_spread = kCurvedSpread;
-  if (!wanted_only) how.steep_fraction = 1;
-  if (wanted_only) how.unwanted_edge = std::numeric_limits<double>::infinity();
+  if (!shown_alone) how.steep_fraction = 1;
+  how.shown_alone = shown_alone;
   how.other_light = direct_of_patch_;
   how.patch_light = indirect_;
   FieldSummary field =
       buildField(mesh_, indirect_surface_, light, how, int(bands_),
-                 wanted_only ? "indirect light" : "sources of indirect light", progress_);
+                 shown_alone ? "indirect light" : "sources of indirect light", progress_);
   report_.rays += double(light.repeated()) * more_rays;
   return field;
 }

@@ -61,8 +61,10 @@ class LightSources {
   void findDirect(bool keep_lights);
   void findSources();
   int raysFor(double vertices, int wanted) const;
-  double wantedCorners() const;
-  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool wanted_only);
+  void findUses(std::span<const std::uint8_t> wanted);
+  bool isLeftOut(std::size_t patch) const;
+  double corners(bool shown_alone) const;
+  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool shown_alone);
 
   const PatchMesh& mesh_;
   const PatchMaterials& materials_;
@@ -74,7 +76,7 @@ class LightSources {
   ElementSurface indirect_surface_;  ///< the same roots
   ElementLookup lookup_;
   PointRays rays_;
-  std::vector<std::uint8_t> wanted_;  ///< R, or empty
+  std::vector<RootUse> use_;  ///< R, or empty; the same for all roots of a patch
   std::vector<double> light_of_patch_;
   double mean_light_ = 0;
   ElementSet elements_;

@@ -296,6 +296,7 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, ElementReport>& r) {
   a.choice("direct", r.direct, kDirectLightNames);
   a("roots", r.roots);
+  a("as_solved", r.as_solved);
   a("emitters", r.emitters);
   a("direct_vertices", r.direct_vertices);
   a("direct_by_rays", r.direct_by_rays);

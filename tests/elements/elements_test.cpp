@@ -406,6 +406,38 @@ TEST(Elements, SliversDoNotHoldTheVerticesOfTheirNeighbours) {
   EXPECT_GT(large, 10u);
 }
 
+/// A tray of small boxes above the floor is a source of light for it.
+TEST(Elements, SmallPatchesOutOfViewAreSourcesAsSolved) {
+  SceneBuilder builder;
+  builder.box(builder.surface("wall", 0.6), Vec3(0), {2, 3, 2}, false);
+  builder.level(builder.surface("lamp", 0.0, 10.0), 0.7, 1.2, 1.3, 1.8, 1.99, false);
+  const auto tray = builder.surface("tray", 0.9);
+  for (int k = 0; k < 64; ++k) {
+    const Vec3 corner{0.2 + 0.03 * (k % 8), 0.2 + 0.03 * (k / 8), 0.2};
+    builder.box(tray, corner, corner + Vec3(0.015));
+  }
+  const Scene scene = builder.scene();
+  const ElementOptions options;
+  const Lit all(scene, 300, options, solved);
+  std::vector<std::uint8_t> wanted(all.mesh.size());
+  for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = all.mesh.centroid[i].z < 0.1 ? 1 : 0;
+  Progress quiet;
+  const std::vector<double> irradiance = solved(all.mesh, all.materials);
+  const Elements some =
+      computeElements(all.mesh, all.materials, irradiance, options, wanted, quiet);
+  EXPECT_EQ(some.report.as_solved, 384u);
+  const ElementLookup lookup(all.mesh, some.roots);
+  for (std::size_t i = 0; i < all.mesh.size(); ++i) {
+    if (wanted[i] == 0) continue;
+    const Vec3& middle = all.mesh.centroid[i];
+    std::vector<double> kept(std::size_t(some.bands), 0.0);
+    const std::size_t root = lookup.rootAt(i, middle);
+    ASSERT_TRUE(lookup.add(some.indirect, root, lookup.place(root, middle), kept));
+    const double light = all.at(all.elements.indirect, i, middle);
+    EXPECT_NEAR(kept[0], light, options.tolerance * light) << i;
+  }
+}
+
 TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {
   const auto withThreads = [](int threads) {
     setThreads(threads);

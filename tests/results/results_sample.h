@@ -335,6 +335,7 @@ inline Elements elements(const PatchMesh& mesh, int bands) {
   ElementReport& r = e.report;
   r.direct = DirectLight::partly;
   r.roots = 71;
+  r.as_solved = 70;
   r.emitters = 72;
   r.direct_vertices = 73;
   r.direct_by_rays = 74;
@@ -560,8 +561,8 @@ inline auto members(const ElementField& s) {
   return std::tie(a, b, c, d);
 }
 inline auto members(const ElementReport& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
 }
 inline auto members(const Elements& s) {
   const auto& [a, b, c, d, e] = s;
