@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <optional>
 #include <unordered_map>
 
+#include "elements/emitter_aim.h"
 #include "formfactor/exact/flat_polygon.h"
 #include "formfactor/exact/point_to_polygon.h"
 #include "formfactor/rays/sobol.h"
@@ -12,8 +14,11 @@
 namespace radiosity {
 namespace {
 
-/// The number of rays to emitters from a point.
+/// The number of rays to emitters from a point, and from one that some of them do not reach.
 constexpr std::size_t kLooks = 64;
+constexpr std::size_t kMoreLooks = 256;
+/// An emitter that gets fewer rays than this takes them evenly.
+constexpr double kFewLooks = 3;
 /// Light on an element is clipped if its emitters and occluders together are no more than this. A
 /// point then takes some 50 us, like its rays.
 constexpr std::size_t kMostClips = 64;
@@ -46,19 +51,6 @@ double unblockedFactor(const Emitter& emitter, const Vec3& eye, const Vec3& norm
   return target.count < 3 ? 0.0 : pointToPolygon(eye, normal, target.outline());
 }
 
-/// A point of an emitter from two numbers in [0, 1), with the same spread.
-Vec3 placeOn(const Emitter& emitter, double u, double v) {
-  const auto& o = emitter.outline;
-  if (o.size() == 4) {
-    return (1 - v) * ((1 - u) * o[0] + u * o[1]) + v * ((1 - u) * o[3] + u * o[2]);
-  }
-  if (u + v > 1) {
-    u = 1 - u;
-    v = 1 - v;
-  }
-  return o[0] + u * (o[1] - o[0]) + v * (o[2] - o[0]);
-}
-
 }  // namespace
 
 /// The emitters that an element may see, and the occluders that may be in between.
@@ -80,7 +72,8 @@ struct EmitterLight::Lights : ElementLights {
 struct EmitterLight::Unblocked {
   struct Share {
     Index emitter;
-    double end;  ///< end of its share in the running sum
+    double factor;  ///< form factor
+    double end;     ///< end of its share in the running sum
   };
   std::vector<Share> shares;
   std::vector<double> whole;  ///< by band
@@ -89,9 +82,12 @@ struct EmitterLight::Unblocked {
 
 /// Rays from a point to points of emitters, and whether they arrive.
 struct EmitterLight::Looks {
-  std::array<Vec3, kLooks> to;
-  std::array<Index, kLooks> emitter;
-  std::array<std::uint8_t, kLooks> seen;
+  std::array<Vec3, kMoreLooks> to;
+  std::array<Index, kMoreLooks> polygon;
+  std::array<Index, kMoreLooks> emitter;
+  std::array<double, kMoreLooks> weight;  ///< light of the place over the density of rays there
+  std::array<std::uint8_t, kMoreLooks> seen;
+  std::size_t count = 0;
 };
 
 EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& materials,
@@ -115,14 +111,16 @@ EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& material
   for (Index o = 0; o < bodies.size(); ++o) {
     for (const Index f : bodies[o].facets) own_[f].push_back(o);
   }
-  std::array<std::array<float, kLooks>, kDimensions> points;
+  std::array<std::array<float, kMoreLooks>, kDimensions> points;
   PointArrays out{};
   for (std::size_t d = 0; d < kDimensions; ++d) out[d] = points[d].data();
-  SobolPoints().points(0, kLooks, 0, out);
-  for (std::size_t k = 0; k < kLooks; ++k) {
-    aims_.push_back({points[0][k], points[1][k], points[2][k], points[3][k]});
+  SobolPoints().points(0, kMoreLooks, 0, out);
+  for (std::size_t k = 0; k < kMoreLooks; ++k) {
+    aims_.push_back({points[0][k], points[1][k], points[2][k]});
   }
-  std::sort(aims_.begin(), aims_.end());
+  // Sorted by the number that chooses the emitter.
+  std::sort(aims_.begin(), aims_.begin() + kLooks);
+  std::sort(aims_.begin() + kLooks, aims_.end());
 }
 
 std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& shape,
@@ -281,25 +279,41 @@ double EmitterLight::clipped(const SurfacePoint& point, const Lights& lights,
   return 0;
 }
 
-/// Aims rays at emitters in proportion to their light, so each ray stands for the same light.
-EmitterLight::Looks EmitterLight::look(const SurfacePoint& point, const Unblocked& light) const {
-  Looks looks;
-  std::array<Index, kLooks> polygon;
+/// Adds rays until there are `count`, aimed in proportion to the unblocked light, so that each
+/// stands for nearly the same light.
+void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, std::size_t count,
+                        Looks& looks) const {
+  const Vec3 eye = scaled(point.position);
+  const std::size_t first = looks.count;
+  std::optional<EmitterAim> aim;
   std::size_t at = 0;
-  for (std::size_t k = 0; k < kLooks; ++k) {
+  for (std::size_t k = first; k < count; ++k) {
+    const std::size_t before = at;
     while (at + 1 < light.shares.size() &&
            double(aims_[k][0]) * light.sum >= light.shares[at].end) {
       ++at;
     }
-    const Emitter& emitter = emitters_[light.shares[at].emitter];
-    const Vec3 place = placeOn(emitter, aims_[k][1], aims_[k][2]);
-    looks.to[k] = place / elements_.scale + elements_.middle;
-    polygon[k] = elements_.facets[emitter.facet].polygon;
-    looks.emitter[k] = light.shares[at].emitter;
+    const Unblocked::Share& share = light.shares[at];
+    const Emitter& emitter = emitters_[share.emitter];
+    if (!aim || at != before) {
+      const double given = share.end - (at > 0 ? light.shares[at - 1].end : 0.0);
+      const bool few = given * double(count - first) < kFewLooks * light.sum;
+      const Vec3 to = emitter.centre - eye;
+      const double far = kFar * emitter.radius;
+      aim.emplace(emitter, eye, point.normal, few || glm::dot(to, to) > far * far);
+    }
+    const AimedPlace place = aim->at(aims_[k][1], aims_[k][2]);
+    looks.to[k] = place.at / elements_.scale + elements_.middle;
+    looks.weight[k] = place.factor / share.factor;
+    looks.polygon[k] = elements_.facets[emitter.facet].polygon;
+    looks.emitter[k] = share.emitter;
   }
-  rays_.see({point.position, point.normal, surface_.owners[point.owners]}, looks.to, polygon,
-            looks.seen);
-  return looks;
+  looks.count = count;
+  const std::size_t fresh = count - first;
+  rays_.see({point.position, point.normal, surface_.owners[point.owners]},
+            std::span(looks.to).subspan(first, fresh),
+            std::span(looks.polygon).subspan(first, fresh),
+            std::span(looks.seen).subspan(first, fresh));
 }
 
 /// Sums the light of the emitters that an element may see, or of all if `lights` is null.
@@ -318,7 +332,7 @@ void EmitterLight::sumUnblocked(const SurfacePoint& point, const Lights* lights,
       light.whole[b] += factor * exitance[b];
       given += factor * exitance[b];
     }
-    light.shares.push_back({e, light.sum += given});
+    light.shares.push_back({e, factor, light.sum += given});
   };
   if (lights == nullptr) {
     for (Index e = 0; e < emitters_.size(); ++e) add(e);
@@ -329,52 +343,58 @@ void EmitterLight::sumUnblocked(const SurfacePoint& point, const Lights* lights,
 
 /// Adds the light that the looks let through. Returns the square of its error, estimated from every
 /// second look alone.
-double EmitterLight::addSeen(const SurfacePoint& point, const Unblocked& light, const Looks& looks,
+double EmitterLight::addSeen(const Unblocked& light, const Looks& looks,
                              std::span<double> out) const {
-  const double horizon = glm::dot(point.normal, scaled(point.position));
-  std::size_t above = 0;
-  std::size_t visible = 0;
-  std::size_t odd_above = 0;
-  std::size_t odd_visible = 0;
-  std::vector<double> given(out.size(), 0.0);
-  std::vector<double> all(out.size(), 0.0);
-  for (std::size_t k = 0; k < kLooks; ++k) {
-    if (!(glm::dot(point.normal, scaled(looks.to[k])) > horizon)) continue;
+  thread_local std::vector<double> given;
+  thread_local std::vector<double> all;
+  given.assign(out.size(), 0.0);
+  all.assign(out.size(), 0.0);
+  std::array<double, 2> above{};  // of even looks, of odd ones
+  std::array<double, 2> visible{};
+  for (std::size_t k = 0; k < looks.count; ++k) {
     const double* exitance =
         materials_.emission.data() + emitters_[looks.emitter[k]].patch * out.size();
     double sum = 0;
     for (std::size_t b = 0; b < out.size(); ++b) sum += exitance[b];
+    const double weight = looks.weight[k];
     for (std::size_t b = 0; b < out.size(); ++b) {
-      all[b] += exitance[b] / sum;
-      if (looks.seen[k] != 0) given[b] += exitance[b] / sum;
+      all[b] += weight * exitance[b] / sum;
+      if (looks.seen[k] != 0) given[b] += weight * exitance[b] / sum;
     }
-    ++above;
-    visible += looks.seen[k];
-    if (k % 2 == 1) {
-      ++odd_above;
-      odd_visible += looks.seen[k];
-    }
+    above[k % 2] += weight;
+    if (looks.seen[k] != 0) visible[k % 2] += weight;
   }
-  if (above == 0) return 0;
   for (std::size_t b = 0; b < out.size(); ++b) {
     if (all[b] > 0) out[b] += light.whole[b] * given[b] / all[b];
   }
-  if (odd_above == 0 || odd_above == above) return light.sum * light.sum;
+  if (!(above[0] > 0 && above[1] > 0)) return light.sum * light.sum;
   const double off =
-      light.sum * (double(visible) / double(above) - double(odd_visible) / double(odd_above));
+      light.sum * ((visible[0] + visible[1]) / (above[0] + above[1]) - visible[1] / above[1]);
   return off * off;
 }
 
+/// Most points see all looks arrive or none; those in a penumbra take more.
 double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
                            std::span<double> out) const {
   ++by_rays_;
   thread_local Unblocked light;
+  thread_local Looks looks;
   light.shares.clear();
   light.whole.assign(out.size(), 0.0);
   light.sum = 0;
   sumUnblocked(point, lights, light);
   if (!(light.sum > 0)) return 0;
-  return addSeen(point, light, look(point, light), out);
+  looks.count = 0;
+  look(point, light, kLooks, looks);
+  bool some = false;
+  bool all = true;
+  for (std::size_t k = 0; k < kLooks; ++k) {
+    if (!(looks.weight[k] > 0)) continue;  // below the horizon
+    some = some || looks.seen[k] != 0;
+    all = all && looks.seen[k] != 0;
+  }
+  if (some && !all) look(point, light, kMoreLooks, looks);
+  return addSeen(light, looks, out);
 }
 
 }  // namespace radiosity

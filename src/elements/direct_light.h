@@ -27,9 +27,9 @@ inline constexpr std::size_t kMostAimedEmitters = 8192;
 /// A point sees each emitter whole, or past a list of occluders. The list is found for the root and
 /// thinned out for the elements below it, with the proofs that Visibility uses. Emitters proved
 /// hidden are not tested again. If there are too many occluders for clipping, kLooks rays go to
-/// points on the emitters. They are spread in proportion to the unoccluded light, so that only
-/// visibility is sampled. All vertices aim at the same points, so that their errors vary as
-/// smoothly as light does.
+/// points on the emitters, and more if only some arrive. They are spread in proportion to the
+/// unoccluded light (EmitterAim), so that only visibility is sampled. All vertices aim at the same
+/// points, so that their errors vary as smoothly as light does.
 class EmitterLight : public FieldLight {
  public:
   /// Refers to all arguments, which must outlive it. `occluders`: null: rays alone, for many
@@ -62,9 +62,9 @@ class EmitterLight : public FieldLight {
   bool ownsOccluder(Index owners, Index occluder) const;
   double clipped(const SurfacePoint& point, const Lights& lights, std::span<double> out) const;
   void sumUnblocked(const SurfacePoint& point, const Lights* lights, Unblocked& light) const;
-  Looks look(const SurfacePoint& point, const Unblocked& light) const;
-  double addSeen(const SurfacePoint& point, const Unblocked& light, const Looks& looks,
-                 std::span<double> out) const;
+  void look(const SurfacePoint& point, const Unblocked& light, std::size_t count,
+            Looks& looks) const;
+  double addSeen(const Unblocked& light, const Looks& looks, std::span<double> out) const;
   double aimed(const SurfacePoint& point, const Lights* lights, std::span<double> out) const;
 
   const PatchMaterials& materials_;
@@ -77,7 +77,7 @@ class EmitterLight : public FieldLight {
   VisibilityKernels kernels_;
   std::vector<Index> facet_of_patch_;       ///< N; kNone
   std::vector<std::vector<Index>> own_;     ///< by facet: the occluders of which it is a part
-  std::vector<std::array<float, 4>> aims_;  ///< of the rays, in [0, 1)
+  std::vector<std::array<float, 3>> aims_;  ///< of the rays, in [0, 1)
   mutable std::atomic<std::size_t> by_rays_ = 0;
 };
 

@@ -44,7 +44,7 @@ constexpr double kCurvedSpread = 4;
 constexpr double kSteepSpread = 0.5;
 constexpr double kSteepFraction = 0.125;
 /// Direct light by rays is not refined below this.
-constexpr double kDearEdge = 0.015;
+constexpr double kDearEdge = 0.005;
 /// The least light to which errors are compared, as a share of the mean.
 constexpr double kLeastLight = 0.1;
 /// To divide most_rays, the first pass is assumed to take half of it, and the second pass to have

@@ -406,6 +406,21 @@ TEST(Elements, SliversDoNotHoldTheVerticesOfTheirNeighbours) {
   EXPECT_GT(large, 10u);
 }
 
+/// Indirect light at the middles of wanted patches, within the tolerance.
+void expectTheSameLight(const Lit& all, const Elements& some, std::span<const std::uint8_t> wanted,
+                        double tolerance) {
+  const ElementLookup lookup(all.mesh, some.roots);
+  for (std::size_t i = 0; i < all.mesh.size(); ++i) {
+    if (wanted[i] == 0) continue;
+    const Vec3& middle = all.mesh.centroid[i];
+    std::vector<double> kept(std::size_t(some.bands), 0.0);
+    const std::size_t root = lookup.rootAt(i, middle);
+    ASSERT_TRUE(lookup.add(some.indirect, root, lookup.place(root, middle), kept));
+    const double light = all.at(all.elements.indirect, i, middle);
+    EXPECT_NEAR(kept[0], light, tolerance * light) << i;
+  }
+}
+
 /// A tray of small boxes above the floor is a source of light for it.
 TEST(Elements, SmallPatchesOutOfViewAreSourcesAsSolved) {
   SceneBuilder builder;
@@ -413,7 +428,8 @@ TEST(Elements, SmallPatchesOutOfViewAreSourcesAsSolved) {
   builder.level(builder.surface("lamp", 0.0, 10.0), 0.7, 1.2, 1.3, 1.8, 1.99, false);
   const auto tray = builder.surface("tray", 0.9);
   for (int k = 0; k < 64; ++k) {
-    const Vec3 corner{0.2 + 0.03 * (k % 8), 0.2 + 0.03 * (k / 8), 0.2};
+    const int row = k / 8;
+    const Vec3 corner{0.2 + 0.03 * (k % 8), 0.2 + 0.03 * row, 0.2};
     builder.box(tray, corner, corner + Vec3(0.015));
   }
   const Scene scene = builder.scene();
@@ -426,16 +442,7 @@ TEST(Elements, SmallPatchesOutOfViewAreSourcesAsSolved) {
   const Elements some =
       computeElements(all.mesh, all.materials, irradiance, options, wanted, quiet);
   EXPECT_EQ(some.report.as_solved, 384u);
-  const ElementLookup lookup(all.mesh, some.roots);
-  for (std::size_t i = 0; i < all.mesh.size(); ++i) {
-    if (wanted[i] == 0) continue;
-    const Vec3& middle = all.mesh.centroid[i];
-    std::vector<double> kept(std::size_t(some.bands), 0.0);
-    const std::size_t root = lookup.rootAt(i, middle);
-    ASSERT_TRUE(lookup.add(some.indirect, root, lookup.place(root, middle), kept));
-    const double light = all.at(all.elements.indirect, i, middle);
-    EXPECT_NEAR(kept[0], light, options.tolerance * light) << i;
-  }
+  expectTheSameLight(all, some, wanted, options.tolerance);
 }
 
 TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {
@@ -468,16 +475,7 @@ TEST(Elements, UnwantedPatchesAreLeftOut) {
   for (std::size_t r = 0; r < some.roots.size(); ++r) {
     EXPECT_EQ(some.indirect.elements[r].corners != 0, wanted[some.roots.patch[r]] != 0);
   }
-  const ElementLookup lookup(all.mesh, some.roots);
-  for (std::size_t i = 0; i < all.mesh.size(); ++i) {
-    if (wanted[i] == 0) continue;
-    const Vec3& middle = all.mesh.centroid[i];
-    std::vector<double> kept(std::size_t(some.bands), 0.0);
-    const std::size_t root = lookup.rootAt(i, middle);
-    ASSERT_TRUE(lookup.add(some.indirect, root, lookup.place(root, middle), kept));
-    const double light = all.at(all.elements.indirect, i, middle);
-    EXPECT_NEAR(kept[0], light, options.tolerance * light) << i;
-  }
+  expectTheSameLight(all, some, wanted, options.tolerance);
 }
 
 TEST(Elements, TheNumberOfVerticesIsBounded) {

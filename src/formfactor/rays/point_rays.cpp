@@ -31,15 +31,18 @@ struct SightContext {
   RTCIntersectContext context;  // first: Embree gives back a pointer to it
   const RayTargets* targets;
   std::span<const Index> own;
-  Index there;
+  std::span<const Index> there;  ///< by the number that the ray has
 };
 
-/// An intersection filter for a single ray: polygons that either end lies on stop nothing.
-void passEnds(const RTCFilterFunctionNArguments* hit) {
-  const auto* sight = reinterpret_cast<const SightContext*>(hit->context);
-  const Index polygon = sight->targets->polygonOf(RTCHitN_primID(hit->hit, 1, 0));
-  const bool own = std::find(sight->own.begin(), sight->own.end(), polygon) != sight->own.end();
-  if (own || polygon == sight->there) hit->valid[0] = 0;
+/// An intersection filter: polygons that either end lies on stop nothing.
+void passEnds(const RTCFilterFunctionNArguments* hits) {
+  const auto* sight = reinterpret_cast<const SightContext*>(hits->context);
+  for (unsigned k = 0; k < hits->N; ++k) {
+    if (hits->valid[k] == 0) continue;
+    const Index polygon = sight->targets->polygonOf(RTCHitN_primID(hits->hit, hits->N, k));
+    const bool own = std::find(sight->own.begin(), sight->own.end(), polygon) != sight->own.end();
+    if (own || polygon == sight->there[RTCRayN_id(hits->ray, hits->N, k)]) hits->valid[k] = 0;
+  }
 }
 
 }  // namespace
@@ -145,22 +148,31 @@ void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<c
                     std::span<std::uint8_t> seen) const {
   const FlushDenormals flush;
   const glm::vec3 start = lifted(from);
-  for (std::size_t k = 0; k < to.size(); ++k) {
-    SightContext sight{{}, &targets_, from.own, there[k]};
-    rtcInitIntersectContext(&sight.context);
-    sight.context.filter = passEnds;
-    const glm::vec3 along = embree_.place(to[k] * scene_.scale) - start;
-    RTCRay ray{};
-    ray.org_x = start.x;
-    ray.org_y = start.y;
-    ray.org_z = start.z;
-    ray.dir_x = along.x;
-    ray.dir_y = along.y;
-    ray.dir_z = along.z;
-    ray.tfar = 1 - kShort;
-    ray.mask = 0xffffffffu;
-    rtcOccluded1(embree_.handle(), &sight.context, &ray);
-    seen[k] = ray.tfar < 0 ? 0 : 1;
+  SightContext sight{{}, &targets_, from.own, there};
+  rtcInitIntersectContext(&sight.context);
+  sight.context.filter = passEnds;
+  sight.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCRay16 packet;
+  alignas(64) std::array<int, kRayLanes> valid;
+  for (std::size_t first = 0; first < to.size(); first += kRayLanes) {
+    const auto lanes = std::min(std::size_t(kRayLanes), to.size() - first);
+    packet = {};
+    for (std::size_t k = 0; k < kRayLanes; ++k) {
+      valid[k] = k < lanes ? -1 : 0;
+      if (k >= lanes) continue;
+      const glm::vec3 along = embree_.place(to[first + k] * scene_.scale) - start;
+      packet.org_x[k] = start.x;
+      packet.org_y[k] = start.y;
+      packet.org_z[k] = start.z;
+      packet.dir_x[k] = along.x;
+      packet.dir_y[k] = along.y;
+      packet.dir_z[k] = along.z;
+      packet.tfar[k] = 1 - kShort;
+      packet.mask[k] = 0xffffffffu;
+      packet.id[k] = unsigned(first + k);
+    }
+    rtcOccluded16(valid.data(), embree_.handle(), &sight.context, &packet);
+    for (std::size_t k = 0; k < lanes; ++k) seen[first + k] = packet.tfar[k] < 0 ? 0 : 1;
   }
 }
 
