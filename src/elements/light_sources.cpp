@@ -59,6 +59,12 @@ constexpr double kUneven = 7;
 /// So does a point for which two halves of its rays say that the mean is off by this many
 /// tolerances: around a small bright patch, such as the ceiling above a lamp.
 constexpr double kApart = 2;
+/// Sources of indirect light: if the first pass of rays changes the reflected power of indirect
+/// light by less than this share, it is the only one, unless patches share unknowns.
+constexpr double kSettled = 0.003;
+constexpr int kPasses = 3;
+/// A tolerance at which no element is cut.
+constexpr double kUncut = 1e9;
 /// Direct light by rays: its steps are not refined below this.
 constexpr double kAimedTolerance = 0.02;
 
@@ -66,43 +72,6 @@ double brightness(std::span<const double> values, std::size_t patch, std::size_t
   double sum = 0;
   for (std::size_t b = 0; b < bands; ++b) sum += values[patch * bands + b];
   return sum;
-}
-
-/// Means of a field over patches, N * bands, from 8 x 8 points of each root. In a triangle, points
-/// beyond its longest side are mirrored into it.
-std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
-                               const ElementLookup& lookup, const ElementField& field,
-                               std::size_t bands) {
-  std::vector<double> means(mesh.size() * bands, 0.0);
-  constexpr int kSide = 8;
-  parallelFor(mesh.size(), 64, [&](std::size_t i) {
-    double whole = 0;
-    std::vector<double> sum(bands, 0.0);
-    for (std::size_t r = roots.of_patch[i]; r < roots.of_patch[i + 1]; ++r) {
-      const bool quad = roots.cornerCount(r) == 4;
-      const auto& c = roots.corner[r];
-      const Vec3 a = mesh.vertices[c[0]];
-      const Vec3 ab = mesh.vertices[c[1]] - a;
-      const Vec3 ad = mesh.vertices[c[quad ? 3 : 2]] - a;
-      const Vec3 fold = quad ? mesh.vertices[c[2]] - a - ab - ad : Vec3(0.0);
-      std::vector<double> light(bands);
-      for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x) {
-          Vec2 at{(x + 0.5) / kSide, (y + 0.5) / kSide};
-          const double weight = glm::length(glm::cross(ab + at.y * fold, ad + at.x * fold));
-          if (!quad && at.x + at.y > 1) at = Vec2(1.0) - at;
-          std::fill(light.begin(), light.end(), 0.0);
-          lookup.add(field, r, at, light);
-          whole += weight * (quad ? 1 : 0.5);
-          for (std::size_t b = 0; b < bands; ++b) {
-            sum[b] += weight * (quad ? 1 : 0.5) * light[b];
-          }
-        }
-      }
-    }
-    for (std::size_t b = 0; b < bands && whole > 0; ++b) means[i * bands + b] = sum[b] / whole;
-  });
-  return means;
 }
 
 double longestEdge(const PatchMesh& mesh, std::size_t patch) {
@@ -113,10 +82,6 @@ double longestEdge(const PatchMesh& mesh, std::size_t patch) {
                                               mesh.vertices[outline[(k + 1) % outline.size()]]));
   }
   return longest;
-}
-
-bool sharesUnknown(const PatchMesh& mesh, std::size_t patch) {
-  return mesh.clusters && mesh.clusters->patchesOf(mesh.clusters->of_patch[patch]).size() > 1;
 }
 
 }  // namespace
@@ -184,11 +149,6 @@ void LightSources::findUses(std::span<const std::uint8_t> wanted) {
               use_.begin() + std::ptrdiff_t(of_patch[i + 1]), use);
   });
   report_.as_solved = std::size_t(std::ranges::count(use_, RootUse::none));
-}
-
-bool LightSources::isLeftOut(std::size_t patch) const {
-  const std::size_t root = surface_.roots.of_patch[patch];
-  return root < use_.size() && use_[root] == RootUse::none;
 }
 
 RefinementRule LightSources::rule(double tolerance, double smallest) const {
@@ -268,41 +228,56 @@ void LightSources::findSources() {
   for (std::size_t i = 0; i < mesh_.size(); ++i) {
     direct_of_patch_.push_back(brightness(direct, i, bands_));
   }
-  const bool emission = report_.direct == DirectLight::hemispheres;
-  const auto direct_at = [&](std::size_t root, Vec2 at, std::span<double> sum) {
-    lookup_.add(direct_.field, root, at, sum);
+  IndirectSources indirect(mesh_, materials_, surface_, lookup_, indirect_);
+  const int rays = raysFor(kFirstShare * corners(false), std::max(16, options_.rays / 4));
+  const auto pass = [&](const SourceMap& sources, std::size_t lights) {
+    FieldSummary field = onePass(sources, rays, kUncut, false, lights);
+    report_.rays += double(field.evaluated) * rays;
+    report_.indirect_vertices += field.evaluated;
+    return std::move(field.field);
   };
-  const int first_rays = raysFor(kFirstShare * corners(false), std::max(16, options_.rays / 4));
-  FieldSummary first;
-  {
-    const SourceMap sources(surface_, lookup_, materials_, emission,
-                            [&](std::size_t root, Vec2 at, std::span<double> sum) {
-                              direct_at(root, at, sum);
-                              const std::size_t k = surface_.roots.patch[root] * bands_;
-                              for (std::size_t b = 0; b < bands_; ++b) sum[b] += indirect_[k + b];
-                            });
-    first = onePass(sources, first_rays, 1e9, false);
+  const std::size_t lights = indirect.wantsSolution() ? 2 : 1;
+  indirect.begin(pass(firstSources(lights), lights));
+  const bool settled = indirect.wantsSolution() &&
+                       std::abs(indirect.change()) < kSettled * indirect.reflectedPower(indirect_);
+  if (settled) {
+    indirect.keepMeans();
+  } else {
+    for (int k = 1; k < kPasses; ++k) indirect.take(pass(sourcesFrom(indirect), 1));
+    indirect.extrapolate();
   }
-  report_.rays += double(first.evaluated) * first_rays;
-  report_.indirect_vertices = first.evaluated;
-  // The first pass gives the shape of light within a patch. Linear interpolation between so few
-  // vertices makes its mean too low, so we take the mean of the solution. For a patch that shares
-  // its unknown the solution has only a fit, and the first pass is better.
-  std::vector<double> lift = patchMeans(mesh_, surface_.roots, lookup_, first.field, bands_);
-  for (std::size_t k = 0; k < lift.size(); ++k) {
-    const std::size_t patch = k / bands_;
-    const bool fit = sharesUnknown(mesh_, patch) && !isLeftOut(patch);
-    lift[k] = fit ? 0.0 : indirect_[k] - lift[k];
-  }
-  sources_ = std::make_unique<SourceMap>(surface_, lookup_, materials_, emission,
-                                         [&](std::size_t root, Vec2 at, std::span<double> sum) {
-                                           direct_at(root, at, sum);
-                                           lookup_.add(first.field, root, at, sum);
-                                           const std::size_t k =
-                                               surface_.roots.patch[root] * bands_;
-                                           for (std::size_t b = 0; b < bands_; ++b)
-                                             sum[b] += lift[k + b];
-                                         });
+  sources_ = std::make_unique<SourceMap>(sourcesFrom(indirect));
+}
+
+bool LightSources::emitsIndirectly() const { return report_.direct == DirectLight::hemispheres; }
+
+/// Direct light of the elements with the solution's indirect light. Two `lights`: the solution's
+/// own as well.
+SourceMap LightSources::firstSources(std::size_t lights) const {
+  return {surface_,
+          lookup_,
+          materials_,
+          emitsIndirectly(),
+          lights,
+          [&](std::size_t root, Vec2 at, std::span<double> sum) {
+            const std::span<double> light = sum.first(bands_);
+            lookup_.add(direct_.field, root, at, light);
+            const std::size_t k = surface_.roots.patch[root] * bands_;
+            for (std::size_t b = 0; b < bands_; ++b) light[b] += indirect_[k + b];
+            for (std::size_t b = bands_; b < sum.size(); ++b) sum[b] += irradiance_[k + b - bands_];
+          }};
+}
+
+SourceMap LightSources::sourcesFrom(const IndirectSources& indirect) const {
+  return {surface_,
+          lookup_,
+          materials_,
+          emitsIndirectly(),
+          1,
+          [&](std::size_t root, Vec2 at, std::span<double> sum) {
+            lookup_.add(direct_.field, root, at, sum);
+            indirect.add(root, at, sum);
+          }};
 }
 
 ElementField LightSources::indirectField() {
@@ -311,7 +286,7 @@ ElementField LightSources::indirectField() {
   // With Owen-scrambled points 1,024 rays have an error of about 1%.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
   FieldSummary second =
-      onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true);
+      onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true, 1);
   take(second);
   report_.rays += double(second.evaluated) * rays;
   report_.rays_a_vertex = rays;
@@ -333,8 +308,9 @@ double LightSources::corners(bool shown_alone) const {
   return double(std::count(counted.begin(), counted.end(), 1));
 }
 
+/// `lights`: of the sources; all bands of all of them are computed.
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
-                                   bool shown_alone) {
+                                   bool shown_alone, std::size_t lights) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
   // Only for the second pass; so many that all points could take them within a fourth of most_rays.
   const int more_rays =
@@ -351,9 +327,17 @@ FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double to
   if (!shown_alone) how.steep_fraction = 1;
   how.shown_alone = shown_alone;
   how.other_light = direct_of_patch_;
-  how.patch_light = indirect_;
+  std::vector<double> patch_light;
+  for (std::size_t k = 0; k < indirect_.size(); k += bands_) {
+    const auto of_patch = std::span(indirect_).subspan(k, bands_);
+    for (std::size_t l = 0; l < lights; ++l) {
+      patch_light.insert(patch_light.end(), of_patch.begin(), of_patch.end());
+    }
+  }
+  how.patch_light = patch_light;
+  how.judged_bands = bands_;
   FieldSummary field =
-      buildField(mesh_, indirect_surface_, light, how, int(bands_),
+      buildField(mesh_, indirect_surface_, light, how, int(lights * bands_),
                  shown_alone ? "indirect light" : "sources of indirect light", progress_);
   report_.rays += double(light.repeated()) * more_rays;
   return field;

@@ -8,6 +8,7 @@
 #include "elements/direct_light.h"
 #include "elements/emitters.h"
 #include "elements/field_builder.h"
+#include "elements/indirect_sources.h"
 #include "elements/source_map.h"
 #include "elements/surface_points.h"
 #include "formfactor/exact/elements/elements.h"
@@ -22,7 +23,7 @@ void requireSizes(const PatchMesh& mesh, const PatchMaterials& materials,
                   std::span<const double> irradiance, std::span<const std::uint8_t> wanted);
 
 /// Direct light on elements, and the sources of all other light. The sources are the patches, with
-/// their direct light taken from the elements, and the shape of the rest from a first pass of rays.
+/// their direct light taken from the elements, and the rest from passes of rays (IndirectSources).
 class LightSources {
  public:
   /// Arguments as in computeElements(); keeps them by reference. `keep_lights`: emitterLight() will
@@ -62,9 +63,12 @@ class LightSources {
   void findSources();
   int raysFor(double vertices, int wanted) const;
   void findUses(std::span<const std::uint8_t> wanted);
-  bool isLeftOut(std::size_t patch) const;
+  bool emitsIndirectly() const;
+  SourceMap firstSources(std::size_t lights) const;
+  SourceMap sourcesFrom(const IndirectSources& indirect) const;
   double corners(bool shown_alone) const;
-  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool shown_alone);
+  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool shown_alone,
+                       std::size_t lights);
 
   const PatchMesh& mesh_;
   const PatchMaterials& materials_;

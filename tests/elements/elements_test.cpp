@@ -445,6 +445,48 @@ TEST(Elements, SmallPatchesOutOfViewAreSourcesAsSolved) {
   expectTheSameLight(all, some, wanted, options.tolerance);
 }
 
+/// A room with panels 1 cm in front of its walls. Patches of walls are half behind a panel.
+Scene roomWithGaps() {
+  SceneBuilder builder;
+  builder.box(builder.surface("wall", 0.8), Vec3(0), {2, 3, 2}, false);
+  builder.level(builder.surface("carpet", 0.5), 0, 0, 2, 3, 0.01);
+  builder.level(builder.surface("lamp", 0.0, 10.0), 0.7, 1.2, 1.3, 1.8, 1.99, false);
+  const Index panel = builder.surface("panel", 0.8);
+  for (const double y : {0.2, 0.8, 1.4, 2.0, 2.6}) {
+    builder.box(panel, {0.01, y, 0.3}, {0.03, y + 0.25, 1.8});
+    builder.box(panel, {1.97, y, 0.3}, {1.99, y + 0.25, 1.8});
+  }
+  for (const double x : {0.1, 0.6, 1.1, 1.6}) {
+    builder.box(panel, {x, 0.01, 0.3}, {x + 0.25, 0.03, 1.8});
+    builder.box(panel, {x, 2.97, 0.3}, {x + 0.25, 2.99, 1.8});
+  }
+  return builder.scene();
+}
+
+/// Of the carpet, over the points of a grid.
+double meanLight(const Lit& lit) {
+  double sum = 0;
+  int count = 0;
+  for (double x = 0.1; x < 2; x += 0.2) {
+    for (double y = 0.1; y < 3; y += 0.2, ++count) {
+      const std::size_t patch = lit.patchAt("carpet/carpet", x, y);
+      sum += lit.at(lit.elements.direct, patch, {x, y, 0.01});
+      sum += lit.at(lit.elements.indirect, patch, {x, y, 0.01});
+    }
+  }
+  return sum / count;
+}
+
+/// Patches of a metre share unknowns. Truth is what elements of 6,000 patches have, with exact form
+/// factors (2,000: 0.4605). With the solution's own sources light is 6% too low; passes of rays
+/// leave 1 to 3%, by the number of rays, since their points do not resolve the gaps either.
+TEST(Elements, PatchesPartlyInDarkGapsSendTheirLightToTheRoom) {
+  constexpr double kTruth = 0.4622;
+  const Lit lit(roomWithGaps(), 60, {.tolerance = 0.05, .smallest_edge = 0.01, .rays = 64}, solved);
+  ASSERT_TRUE(lit.mesh.clusters);
+  EXPECT_NEAR(meanLight(lit), kTruth, 0.03 * kTruth);
+}
+
 TEST(Elements, AnyNumberOfThreadsGivesTheSameBits) {
   const auto withThreads = [](int threads) {
     setThreads(threads);

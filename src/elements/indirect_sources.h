@@ -1,0 +1,75 @@
+// The indirect light of surfaces as sources of light, from pass to pass.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "elements/surface_points.h"
+#include "radiosity/elements.h"
+
+namespace radiosity {
+
+/// Means of a field over patches, N * bands, from 8 x 8 points of each root; 0 where it was not
+/// evaluated.
+std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
+                               const ElementLookup& lookup, const ElementField& field,
+                               std::size_t bands);
+
+/// Indirect light that is reflected on. At first it is the solution's, constant over each patch. So
+/// a patch that is partly in a dark gap sends light into the gap and less of it to the room than it
+/// does: in a living room by others light was 5% too low. Each pass of rays computes it anew, with
+/// the shape that it has within patches.
+///
+/// A pass has errors of its own: interpolation between its few vertices, and noise. So the first
+/// pass also computes the light of the solution's own sources, and what its means miss of the
+/// solution is added to all passes. Not where patches share unknowns: there the solution has only a
+/// fit to the light of a patch, and what is missing is mostly light in gaps, which goes nowhere.
+class IndirectSources {
+ public:
+  /// `solved`: N * bands, indirect irradiance of the solution. Keeps all by reference.
+  IndirectSources(const PatchMesh& mesh, const PatchMaterials& materials,
+                  const ElementSurface& surface, const ElementLookup& lookup,
+                  std::span<const double> solved);
+
+  /// Whether the first pass is to have the light of the solution's own sources.
+  bool wantsSolution() const { return !mesh_.clusters; }
+  /// The first pass; wantsSolution(): 2 * bands a vertex, the second half from the solution's own
+  /// sources.
+  void begin(ElementField field);
+  /// Gives patches the means of the solution, with the shape of the first pass. Right if that pass
+  /// changed next to nothing.
+  void keepMeans();
+  /// The next pass.
+  void take(ElementField field);
+  /// Of irradiance (N * bands), over all patches and bands, W.
+  double reflectedPower(std::span<const double> irradiance) const;
+  /// By how much the last pass changed the reflected power, W.
+  double change() const { return reflectedPower(light_) - reflectedPower(before_); }
+  /// Adds the changes of all further passes, a geometric series by the last two. Three passes or
+  /// more.
+  void extrapolate();
+
+  /// Adds the light at a place of a root to `sum` (bands).
+  void add(std::size_t root, Vec2 at, std::span<double> sum) const;
+
+ private:
+  bool isEvaluated(std::size_t patch) const;
+  void findMissing();
+  void update();
+
+  const PatchMesh& mesh_;
+  const PatchMaterials& materials_;
+  const ElementSurface& surface_;
+  const ElementLookup& lookup_;
+  std::size_t bands_;
+  std::span<const double> solved_;
+  ElementField field_;           ///< of the last pass
+  std::vector<double> missing_;  ///< N * bands: is added to every pass
+  std::vector<double> light_;    ///< N * bands: means with what was missing
+  std::vector<double> before_;   ///< the same, a pass before
+  double moved_ = 0;             ///< W: the sum of the sizes of all changes
+  double moved_before_ = 0;
+};
+
+}  // namespace radiosity
