@@ -26,9 +26,10 @@ struct ElementOptions {
   /// 1 or more, in each field, besides the corners of patches. At this limit the elements that
   /// promise least stay coarse.
   std::size_t most_vertices = 400000;
-  /// Rays per vertex in the second pass: a power of two, 64 to 4096. The first takes a quarter.
+  /// Rays per vertex in the last pass, which is shown: a power of two, 64 to 4096. Passes before it
+  /// take a quarter, or an eighth where patches share unknowns.
   int rays = 512;
-  /// 1 or more, of both passes together. At this limit each vertex gets fewer rays.
+  /// 1 or more, of all passes together. At this limit each vertex gets fewer rays.
   double most_rays = 1e8;
   double crease = 30;      ///< degrees, 0 to 180; elements across sharper edges share no vertex
   std::uint64_t seed = 1;  ///< of the rays' directions
@@ -85,11 +86,11 @@ struct ElementReport {
   std::size_t emitters = 0;           ///< convex pieces
   std::size_t direct_vertices = 0;    ///< evaluated
   std::size_t direct_by_rays = 0;     ///< of these, by rays to the emitters
-  std::size_t indirect_vertices = 0;  ///< evaluated, in both passes
+  std::size_t indirect_vertices = 0;  ///< evaluated, in all passes
   double uniform_vertices = 0;        ///< of a uniform grid as fine as the smallest element
   std::size_t unrefined = 0;          ///< elements left coarse because of most_vertices
   double rays = 0;
-  int rays_a_vertex = 0;  ///< of the second pass
+  int rays_a_vertex = 0;  ///< of the last pass
   double edge = 0;        ///< metres: the shortest edge of a leaf
   /// Root mean square errors over the area, relative to that of irradiance. Interpolation: from the
   /// refinement's checks. Rays: from the difference of their halves.
@@ -112,7 +113,7 @@ struct Elements {
 
 /// Evaluates irradiance at element vertices. `irradiance`: N * bands, of the solved patches, W/m^2.
 /// Direct light is exact, point to polygon, with blocked parts clipped off. Indirect light is found
-/// by rays in two passes; the elements of the first pass are the sources of the second. `wanted`: N
+/// by rays in two to four passes; the elements of each are the sources of the next. `wanted`: N
 /// flags, 1: the patch's elements are wanted; empty: all. Other patches are evaluated only as far
 /// as wanted ones receive light from them; those with edges below 1/200 of the scene's diagonal not
 /// at all. The same bits for any number of threads. Errors:

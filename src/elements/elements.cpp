@@ -1,4 +1,4 @@
-// Direct light, then indirect light in two passes.
+// Direct light, then indirect light in passes.
 #include "radiosity/elements.h"
 
 #include <fmt/format.h>

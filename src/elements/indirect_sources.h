@@ -46,8 +46,10 @@ class IndirectSources {
   double reflectedPower(std::span<const double> irradiance) const;
   /// By how much the last pass changed the reflected power, W.
   double change() const { return reflectedPower(light_) - reflectedPower(before_); }
-  /// Adds the changes of all further passes, a geometric series by the last two. Three passes or
-  /// more.
+  /// The sum of the sizes of its changes to all patches, W.
+  double moved() const { return moved_; }
+  /// Adds the changes of all further passes, a geometric series by the last two. After two
+  /// passes or more.
   void extrapolate();
 
   /// Adds the light at a place of a root to `sum` (bands).
@@ -68,7 +70,7 @@ class IndirectSources {
   std::vector<double> missing_;  ///< N * bands: is added to every pass
   std::vector<double> light_;    ///< N * bands: means with what was missing
   std::vector<double> before_;   ///< the same, a pass before
-  double moved_ = 0;             ///< W: the sum of the sizes of all changes
+  double moved_ = 0;
   double moved_before_ = 0;
 };
 

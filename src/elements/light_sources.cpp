@@ -47,7 +47,7 @@ constexpr double kSteepFraction = 0.125;
 constexpr double kDearEdge = 0.005;
 /// The least light to which errors are compared, as a share of the mean.
 constexpr double kLeastLight = 0.1;
-/// To divide most_rays, the first pass is assumed to take half of it, and the second pass to have
+/// To divide most_rays, passes of sources are assumed to take half of it, and the last pass to have
 /// this many vertices for each corner of a root.
 constexpr double kFirstShare = 2;
 constexpr double kTestedShare = 3;
@@ -60,9 +60,10 @@ constexpr double kUneven = 7;
 /// tolerances: around a small bright patch, such as the ceiling above a lamp.
 constexpr double kApart = 2;
 /// Sources of indirect light: if the first pass of rays changes the reflected power of indirect
-/// light by less than this share, it is the only one, unless patches share unknowns.
+/// light by less than this share, it is the only one, unless patches share unknowns. Others end
+/// when one moves less than this, or after so many.
 constexpr double kSettled = 0.003;
-constexpr int kPasses = 3;
+constexpr int kMostPasses = 3;
 /// A tolerance at which no element is cut.
 constexpr double kUncut = 1e9;
 /// Direct light by rays: its steps are not refined below this.
@@ -229,7 +230,8 @@ void LightSources::findSources() {
     direct_of_patch_.push_back(brightness(direct, i, bands_));
   }
   IndirectSources indirect(mesh_, materials_, surface_, lookup_, indirect_);
-  const int rays = raysFor(kFirstShare * corners(false), std::max(16, options_.rays / 4));
+  const int wanted = options_.rays / (indirect.wantsSolution() ? 4 : 8);
+  const int rays = raysFor(kFirstShare * corners(false), std::max(16, wanted));
   const auto pass = [&](const SourceMap& sources, std::size_t lights) {
     FieldSummary field = onePass(sources, rays, kUncut, false, lights);
     report_.rays += double(field.evaluated) * rays;
@@ -238,12 +240,13 @@ void LightSources::findSources() {
   };
   const std::size_t lights = indirect.wantsSolution() ? 2 : 1;
   indirect.begin(pass(firstSources(lights), lights));
-  const bool settled = indirect.wantsSolution() &&
-                       std::abs(indirect.change()) < kSettled * indirect.reflectedPower(indirect_);
-  if (settled) {
+  const double little = kSettled * indirect.reflectedPower(indirect_);
+  if (indirect.wantsSolution() && std::abs(indirect.change()) < little) {
     indirect.keepMeans();
   } else {
-    for (int k = 1; k < kPasses; ++k) indirect.take(pass(sourcesFrom(indirect), 1));
+    for (int k = 1; k < kMostPasses && (k == 1 || indirect.moved() > little); ++k) {
+      indirect.take(pass(sourcesFrom(indirect), 1));
+    }
     indirect.extrapolate();
   }
   sources_ = std::make_unique<SourceMap>(sourcesFrom(indirect));
@@ -312,7 +315,7 @@ double LightSources::corners(bool shown_alone) const {
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
                                    bool shown_alone, std::size_t lights) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
-  // Only for the second pass; so many that all points could take them within a fourth of most_rays.
+  // Only for the last pass; so many that all points could take them within a fourth of most_rays.
   const int more_rays =
       shown_alone ? raysFor(4 * kTestedShare * corners(true), std::min(kMoreRays * rays, 4096)) : 0;
   std::optional<HemisphereSet> more;

@@ -27,14 +27,14 @@ void requireSizes(const PatchMesh& mesh, const PatchMaterials& materials,
 class LightSources {
  public:
   /// Arguments as in computeElements(); keeps them by reference. `keep_lights`: emitterLight() will
-  /// be used at points. Fills the report but for the second pass. Throws Cancelled.
+  /// be used at points. Fills the report but for the last pass. Throws Cancelled.
   LightSources(const PatchMesh& mesh, const PatchMaterials& materials,
                std::span<const double> irradiance, const ElementOptions& options,
                std::span<const std::uint8_t> wanted, bool keep_lights, Progress& progress);
   LightSources(const LightSources&) = delete;
   LightSources& operator=(const LightSources&) = delete;
 
-  /// Indirect light on the elements that are wanted: the second pass.
+  /// Indirect light on the elements that are wanted: the last pass.
   ElementField indirectField();
 
   const ElementSurface& surface() const { return surface_; }
