@@ -45,7 +45,6 @@ class FieldBuilder {
         light_(light),
         rule_(rule),
         bands_(std::size_t(bands)),
-        judged_(rule.judged_bands > 0 ? rule.judged_bands : bands_),
         stage_(stage),
         progress_(progress),
         points_(surface.points),
@@ -165,7 +164,7 @@ class FieldBuilder {
 
   double brightness(Index v) {
     double sum = 0;
-    for (std::size_t b = 0; b < judged_; ++b) sum += std::abs(value(v)[b]);
+    for (std::size_t b = 0; b < bands_; ++b) sum += std::abs(value(v)[b]);
     return sum;
   }
 
@@ -293,14 +292,14 @@ class FieldBuilder {
       const double light = lightAt(node, own);
       for (std::size_t k = 0; k < n; ++k) {
         double off = 0;
-        for (std::size_t b = 0; b < judged_; ++b) {
+        for (std::size_t b = 0; b < bands_; ++b) {
           off += std::abs(value(p[n + k])[b] - 0.5 * (value(p[k])[b] + value(p[(k + 1) % n])[b]));
         }
         node.error = std::max(node.error, off / light);
       }
       if (n == 4) {
         double off = 0;
-        for (std::size_t b = 0; b < judged_; ++b) {
+        for (std::size_t b = 0; b < bands_; ++b) {
           off += std::abs(value(p[8])[b] - 0.25 * (value(p[0])[b] + value(p[1])[b] +
                                                    value(p[2])[b] + value(p[3])[b]));
         }
@@ -450,7 +449,6 @@ class FieldBuilder {
   const FieldLight& light_;
   const RefinementRule& rule_;
   std::size_t bands_;
-  std::size_t judged_;
   const std::string& stage_;
   std::size_t round_ = 0;
   Progress& progress_;

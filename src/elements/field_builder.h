@@ -86,8 +86,6 @@ struct RefinementRule {
   bool shown_alone = false;  ///< sources are not evaluated
   /// A root with longer edges is cut for any values.
   double longest_edge = 0;
-  /// Only the first bands of all decide which elements are cut; 0: all do.
-  std::size_t judged_bands = 0;
   bool keep_lights = false;  ///< FieldSummary::lights are wanted
 };
 

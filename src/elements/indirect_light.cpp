@@ -29,8 +29,7 @@ double total(std::span<const double> values) {
 
 void ReflectedLight::addSource(const RayEnd& end, std::span<double> sum) const {
   if (end.patch == RayEnd::kSky) {
-    if (sky_.empty()) return;
-    for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += std::numbers::pi * sky_[b % sky_.size()];
+    for (std::size_t b = 0; b < sky_.size(); ++b) sum[b] += std::numbers::pi * sky_[b];
   } else if (end.patch != RayEnd::kBlack) {
     sources_.add(end.patch, end.at, sum);
   }

@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numeric>
 
 #include "base/parallel.h"
 
 namespace radiosity {
 namespace {
 
-/// If the light that a pass finds at the points of a patch is more than the solution's by this
-/// share, part of the patch is in a gap that has no points: nothing is missing.
-constexpr double kInGaps = 0.06;
 /// The series of changes is not summed if each is more than this share of the one before.
 constexpr double kMostLeft = 0.9;
 
@@ -64,37 +60,13 @@ IndirectSources::IndirectSources(const PatchMesh& mesh, const PatchMaterials& ma
       bands_(std::size_t(materials.bands)),
       solved_(solved),
       missing_(solved.size(), 0.0),
-      light_(solved.begin(), solved.end()) {}
+      light_(solved.begin(), solved.end()) {
+  field_.elements.resize(surface.roots.size());
+}
 
 bool IndirectSources::isEvaluated(std::size_t patch) const {
   const std::size_t root = surface_.roots.of_patch[patch];
   return root < surface_.roots.of_patch[patch + 1] && field_.elements[root].corners != 0;
-}
-
-void IndirectSources::begin(ElementField field) {
-  field_ = std::move(field);
-  if (wantsSolution()) findMissing();
-  update();
-}
-
-/// Leaves the first half of the bands in field_.
-void IndirectSources::findMissing() {
-  const std::vector<double> both = patchMeans(mesh_, surface_.roots, lookup_, field_, 2 * bands_);
-  for (std::size_t i = 0; i < mesh_.size(); ++i) {
-    if (!isEvaluated(i)) continue;
-    const auto solved = solved_.subspan(i * bands_, bands_);
-    const auto found = std::span(both).subspan((2 * i + 1) * bands_, bands_);
-    const double whole = std::accumulate(found.begin(), found.end(), 0.0);
-    const double off = std::accumulate(solved.begin(), solved.end(), -whole);
-    if (off < -kInGaps * whole) continue;
-    for (std::size_t b = 0; b < bands_; ++b) missing_[i * bands_ + b] = solved[b] - found[b];
-  }
-  std::vector<double> first;
-  for (std::size_t k = 0; k < field_.values.size(); k += 2 * bands_) {
-    const auto of_vertex = std::span(field_.values).subspan(k, bands_);
-    first.insert(first.end(), of_vertex.begin(), of_vertex.end());
-  }
-  field_.values = std::move(first);
 }
 
 void IndirectSources::keepMeans() {

@@ -21,10 +21,8 @@ std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
 /// does: in a living room by others light was 5% too low. Each pass of rays computes it anew, with
 /// the shape that it has within patches.
 ///
-/// A pass has errors of its own: interpolation between its few vertices, and noise. So the first
-/// pass also computes the light of the solution's own sources, and what its means miss of the
-/// solution is added to all passes. Not where patches share unknowns: there the solution has only a
-/// fit to the light of a patch, and what is missing is mostly light in gaps, which goes nowhere.
+/// A pass has errors of its own: interpolation between its few vertices, and noise. So patches with
+/// an unknown of their own keep the means of the solution. Those that share one have only a fit.
 class IndirectSources {
  public:
   /// `solved`: N * bands, indirect irradiance of the solution. Keeps all by reference.
@@ -32,21 +30,14 @@ class IndirectSources {
                   const ElementSurface& surface, const ElementLookup& lookup,
                   std::span<const double> solved);
 
-  /// Whether the first pass is to have the light of the solution's own sources.
-  bool wantsSolution() const { return !mesh_.clusters; }
-  /// The first pass; wantsSolution(): 2 * bands a vertex, the second half from the solution's own
-  /// sources.
-  void begin(ElementField field);
-  /// Gives patches the means of the solution, with the shape of the first pass. Right if that pass
-  /// changed next to nothing.
+  /// Gives patches with an unknown of their own the means of the solution, with the shape of the
+  /// last pass.
   void keepMeans();
   /// The next pass.
   void take(ElementField field);
   /// Of irradiance (N * bands), over all patches and bands, W.
   double reflectedPower(std::span<const double> irradiance) const;
-  /// By how much the last pass changed the reflected power, W.
-  double change() const { return reflectedPower(light_) - reflectedPower(before_); }
-  /// The sum of the sizes of its changes to all patches, W.
+  /// The sum of the sizes of the last pass's changes to all patches, W.
   double moved() const { return moved_; }
   /// Adds the changes of all further passes, a geometric series by the last two. After two
   /// passes or more.
@@ -57,7 +48,6 @@ class IndirectSources {
 
  private:
   bool isEvaluated(std::size_t patch) const;
-  void findMissing();
   void update();
 
   const PatchMesh& mesh_;
@@ -67,7 +57,7 @@ class IndirectSources {
   std::size_t bands_;
   std::span<const double> solved_;
   ElementField field_;           ///< of the last pass
-  std::vector<double> missing_;  ///< N * bands: is added to every pass
+  std::vector<double> missing_;  ///< N * bands: is added to the last pass
   std::vector<double> light_;    ///< N * bands: means with what was missing
   std::vector<double> before_;   ///< the same, a pass before
   double moved_ = 0;

@@ -59,9 +59,8 @@ constexpr double kUneven = 7;
 /// So does a point for which two halves of its rays say that the mean is off by this many
 /// tolerances: around a small bright patch, such as the ceiling above a lamp.
 constexpr double kApart = 2;
-/// Sources of indirect light: if the first pass of rays changes the reflected power of indirect
-/// light by less than this share, it is the only one, unless patches share unknowns. Others end
-/// when one moves less than this, or after so many.
+/// Sources of indirect light where patches share unknowns: passes of rays end when one moves less
+/// of the reflected power of indirect light than this share, or after so many.
 constexpr double kSettled = 0.003;
 constexpr int kMostPasses = 3;
 /// A tolerance at which no element is cut.
@@ -230,53 +229,30 @@ void LightSources::findSources() {
     direct_of_patch_.push_back(brightness(direct, i, bands_));
   }
   IndirectSources indirect(mesh_, materials_, surface_, lookup_, indirect_);
-  const int wanted = options_.rays / (indirect.wantsSolution() ? 4 : 8);
+  const bool shared = mesh_.clusters.has_value();
+  const int wanted = options_.rays / (shared ? 8 : 4);
   const int rays = raysFor(kFirstShare * corners(false), std::max(16, wanted));
-  const auto pass = [&](const SourceMap& sources, std::size_t lights) {
-    FieldSummary field = onePass(sources, rays, kUncut, false, lights);
+  const auto pass = [&] {
+    FieldSummary field = onePass(sourcesFrom(indirect), rays, kUncut, false);
     report_.rays += double(field.evaluated) * rays;
     report_.indirect_vertices += field.evaluated;
-    return std::move(field.field);
+    indirect.take(std::move(field.field));
   };
-  const std::size_t lights = indirect.wantsSolution() ? 2 : 1;
-  indirect.begin(pass(firstSources(lights), lights));
-  const double little = kSettled * indirect.reflectedPower(indirect_);
-  if (indirect.wantsSolution() && std::abs(indirect.change()) < little) {
-    indirect.keepMeans();
-  } else {
-    for (int k = 1; k < kMostPasses && (k == 1 || indirect.moved() > little); ++k) {
-      indirect.take(pass(sourcesFrom(indirect), 1));
-    }
+  pass();
+  if (shared) {
+    const double little = kSettled * indirect.reflectedPower(indirect_);
+    for (int k = 1; k < kMostPasses && (k == 1 || indirect.moved() > little); ++k) pass();
     indirect.extrapolate();
+  } else {
+    indirect.keepMeans();
   }
   sources_ = std::make_unique<SourceMap>(sourcesFrom(indirect));
 }
 
 bool LightSources::emitsIndirectly() const { return report_.direct == DirectLight::hemispheres; }
 
-/// Direct light of the elements with the solution's indirect light. Two `lights`: the solution's
-/// own as well.
-SourceMap LightSources::firstSources(std::size_t lights) const {
-  return {surface_,
-          lookup_,
-          materials_,
-          emitsIndirectly(),
-          lights,
-          [&](std::size_t root, Vec2 at, std::span<double> sum) {
-            const std::span<double> light = sum.first(bands_);
-            lookup_.add(direct_.field, root, at, light);
-            const std::size_t k = surface_.roots.patch[root] * bands_;
-            for (std::size_t b = 0; b < bands_; ++b) light[b] += indirect_[k + b];
-            for (std::size_t b = bands_; b < sum.size(); ++b) sum[b] += irradiance_[k + b - bands_];
-          }};
-}
-
 SourceMap LightSources::sourcesFrom(const IndirectSources& indirect) const {
-  return {surface_,
-          lookup_,
-          materials_,
-          emitsIndirectly(),
-          1,
+  return {surface_, lookup_, materials_, emitsIndirectly(),
           [&](std::size_t root, Vec2 at, std::span<double> sum) {
             lookup_.add(direct_.field, root, at, sum);
             indirect.add(root, at, sum);
@@ -289,7 +265,7 @@ ElementField LightSources::indirectField() {
   // With Owen-scrambled points 1,024 rays have an error of about 1%.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
   FieldSummary second =
-      onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true, 1);
+      onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true);
   take(second);
   report_.rays += double(second.evaluated) * rays;
   report_.rays_a_vertex = rays;
@@ -311,9 +287,8 @@ double LightSources::corners(bool shown_alone) const {
   return double(std::count(counted.begin(), counted.end(), 1));
 }
 
-/// `lights`: of the sources; all bands of all of them are computed.
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
-                                   bool shown_alone, std::size_t lights) {
+                                   bool shown_alone) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
   // Only for the last pass; so many that all points could take them within a fourth of most_rays.
   const int more_rays =
@@ -330,17 +305,9 @@ FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double to
   if (!shown_alone) how.steep_fraction = 1;
   how.shown_alone = shown_alone;
   how.other_light = direct_of_patch_;
-  std::vector<double> patch_light;
-  for (std::size_t k = 0; k < indirect_.size(); k += bands_) {
-    const auto of_patch = std::span(indirect_).subspan(k, bands_);
-    for (std::size_t l = 0; l < lights; ++l) {
-      patch_light.insert(patch_light.end(), of_patch.begin(), of_patch.end());
-    }
-  }
-  how.patch_light = patch_light;
-  how.judged_bands = bands_;
+  how.patch_light = indirect_;
   FieldSummary field =
-      buildField(mesh_, indirect_surface_, light, how, int(lights * bands_),
+      buildField(mesh_, indirect_surface_, light, how, int(bands_),
                  shown_alone ? "indirect light" : "sources of indirect light", progress_);
   report_.rays += double(light.repeated()) * more_rays;
   return field;

@@ -64,11 +64,9 @@ class LightSources {
   int raysFor(double vertices, int wanted) const;
   void findUses(std::span<const std::uint8_t> wanted);
   bool emitsIndirectly() const;
-  SourceMap firstSources(std::size_t lights) const;
   SourceMap sourcesFrom(const IndirectSources& indirect) const;
   double corners(bool shown_alone) const;
-  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool shown_alone,
-                       std::size_t lights);
+  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool shown_alone);
 
   const PatchMesh& mesh_;
   const PatchMaterials& materials_;

@@ -12,21 +12,19 @@
 
 namespace radiosity {
 
-/// Reflectance times irradiance, of one light or several, as means over the cells of a grid on each
-/// root. A ray reads one cell: a walk down the trees of elements would take longer than the ray.
-/// Cells are no longer than kCellEdge of the scene's diagonal, unless that takes more than
-/// kMostSide cells a side.
+/// Reflectance times irradiance, as means over the cells of a grid on each root. A ray reads one
+/// cell: a walk down the trees of elements would take longer than the ray. Cells are no longer than
+/// kCellEdge of the scene's diagonal, unless that takes more than kMostSide cells a side.
 class SourceMap {
  public:
   static constexpr double kCellEdge = 0.01;
   static constexpr int kMostSide = 16;
 
-  /// `light(root, place, sum)` adds the irradiance at a place of a root to `sum`, several at once:
-  /// `lights` of them, each with all bands.
+  /// `light(root, place, sum)` adds the irradiance at a place of a root to `sum`, several at once.
   template <class Light>
   SourceMap(const ElementSurface& surface, const ElementLookup& lookup,
-            const PatchMaterials& materials, bool emission, std::size_t lights, const Light& light)
-      : surface_(surface), lookup_(lookup), bands_(lights * std::size_t(materials.bands)) {
+            const PatchMaterials& materials, bool emission, const Light& light)
+      : surface_(surface), lookup_(lookup), bands_(std::size_t(materials.bands)) {
     layOut();
     fill(materials, emission, light);
   }
@@ -55,7 +53,7 @@ class SourceMap {
 
   const ElementSurface& surface_;
   const ElementLookup& lookup_;
-  std::size_t bands_;               ///< of all lights
+  std::size_t bands_;
   std::vector<std::uint8_t> side_;  ///< R
   std::vector<std::size_t> first_;  ///< R + 1, cells
   std::vector<float> values_;       ///< cells * bands
@@ -89,8 +87,7 @@ void SourceMap::fill(const PatchMaterials& materials, bool emission, const Light
       if (counted == 0) sample(Vec2(corner.x, n - 1 - corner.x) / double(n));
       float* cell = values_.data() + (first_[r] + std::size_t(c)) * bands_;
       for (std::size_t b = 0; b < bands_; ++b) {
-        const auto bands = std::size_t(materials.bands);
-        const std::size_t k = patch * bands + b % bands;
+        const std::size_t k = patch * bands_ + b;
         cell[b] = float(materials.reflectance[k] * mean[b] / counted +
                         (emission ? materials.emission[k] : 0.0));
       }
