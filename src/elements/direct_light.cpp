@@ -39,11 +39,16 @@ FlatPolygon aboveHorizon(const Emitter& emitter, const Vec3& normal, double offs
   return clipToFront(emitter.outline, normal, offset);
 }
 
+bool isFar(const Emitter& emitter, const Vec3& eye) {
+  const Vec3 to = emitter.centre - eye;
+  return glm::dot(to, to) > kFar * kFar * emitter.radius * emitter.radius;
+}
+
 /// The form factor from a point to an emitter that faces it, with nothing in between.
 double unblockedFactor(const Emitter& emitter, const Vec3& eye, const Vec3& normal) {
-  const Vec3 to = emitter.centre - eye;
-  const double square = glm::dot(to, to);
-  if (square > kFar * kFar * emitter.radius * emitter.radius) {
+  if (isFar(emitter, eye)) {
+    const Vec3 to = emitter.centre - eye;
+    const double square = glm::dot(to, to);
     return -glm::dot(to, normal) * glm::dot(to, emitter.normal) * emitter.area /
            (std::numbers::pi * square * square);
   }
@@ -298,9 +303,7 @@ void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, std::
     if (!aim || at != before) {
       const double given = share.end - (at > 0 ? light.shares[at - 1].end : 0.0);
       const bool few = given * double(count - first) < kFewLooks * light.sum;
-      const Vec3 to = emitter.centre - eye;
-      const double far = kFar * emitter.radius;
-      aim.emplace(emitter, eye, point.normal, few || glm::dot(to, to) > far * far);
+      aim.emplace(emitter, eye, point.normal, few || isFar(emitter, eye));
     }
     const AimedPlace place = aim->at(aims_[k][1], aims_[k][2]);
     looks.to[k] = place.at / elements_.scale + elements_.middle;

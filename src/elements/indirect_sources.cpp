@@ -59,8 +59,8 @@ IndirectSources::IndirectSources(const PatchMesh& mesh, const PatchMaterials& ma
       lookup_(lookup),
       bands_(std::size_t(materials.bands)),
       solved_(solved),
-      missing_(solved.size(), 0.0),
-      light_(solved.begin(), solved.end()) {
+      light_(solved.begin(), solved.end()),
+      added_(solved.size(), 0.0) {
   field_.elements.resize(surface.roots.size());
 }
 
@@ -69,20 +69,12 @@ bool IndirectSources::isEvaluated(std::size_t patch) const {
   return root < surface_.roots.of_patch[patch + 1] && field_.elements[root].corners != 0;
 }
 
-void IndirectSources::keepMeans() {
-  for (std::size_t k = 0; k < missing_.size(); ++k) missing_[k] += solved_[k] - light_[k];
-}
-
 void IndirectSources::take(ElementField field) {
   field_ = std::move(field);
-  update();
-}
-
-void IndirectSources::update() {
   before_ = std::move(light_);
   light_ = patchMeans(mesh_, surface_.roots, lookup_, field_, bands_);
   for (std::size_t k = 0; k < light_.size(); ++k) {
-    light_[k] = isEvaluated(k / bands_) ? light_[k] + missing_[k] : solved_[k];
+    if (!isEvaluated(k / bands_)) light_[k] = solved_[k];
   }
   std::vector<double> moved(light_.size());
   for (std::size_t k = 0; k < light_.size(); ++k) moved[k] = std::abs(light_[k] - before_[k]);
@@ -98,18 +90,22 @@ double IndirectSources::reflectedPower(std::span<const double> irradiance) const
   return power;
 }
 
+void IndirectSources::keepMeans() {
+  for (std::size_t k = 0; k < added_.size(); ++k) added_[k] = solved_[k] - light_[k];
+}
+
 void IndirectSources::extrapolate() {
   if (!(moved_ < kMostLeft * moved_before_)) return;
   const double left = moved_ / moved_before_;
   for (std::size_t k = 0; k < light_.size(); ++k) {
-    missing_[k] += left / (1 - left) * (light_[k] - before_[k]);
+    added_[k] = left / (1 - left) * (light_[k] - before_[k]);
   }
 }
 
 void IndirectSources::add(std::size_t root, Vec2 at, std::span<double> sum) const {
   const std::size_t k = surface_.roots.patch[root] * bands_;
   const bool evaluated = lookup_.add(field_, root, at, sum);
-  for (std::size_t b = 0; b < bands_; ++b) sum[b] += evaluated ? missing_[k + b] : solved_[k + b];
+  for (std::size_t b = 0; b < bands_; ++b) sum[b] += evaluated ? added_[k + b] : solved_[k + b];
 }
 
 }  // namespace radiosity

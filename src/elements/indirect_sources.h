@@ -21,8 +21,10 @@ std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
 /// does: in a living room by others light was 5% too low. Each pass of rays computes it anew, with
 /// the shape that it has within patches.
 ///
-/// A pass has errors of its own: interpolation between its few vertices, and noise. So patches with
-/// an unknown of their own keep the means of the solution. Those that share one have only a fit.
+/// A pass has errors of its own: interpolation between its few vertices, and noise. So where every
+/// patch has an unknown of its own, one pass is enough, and patches keep the means of the solution
+/// (keepMeans()). Where patches share unknowns the solution has only a fit to the light of each:
+/// several passes follow (extrapolate()).
 class IndirectSources {
  public:
   /// `solved`: N * bands, indirect irradiance of the solution. Keeps all by reference.
@@ -30,17 +32,16 @@ class IndirectSources {
                   const ElementSurface& surface, const ElementLookup& lookup,
                   std::span<const double> solved);
 
-  /// Gives patches with an unknown of their own the means of the solution, with the shape of the
-  /// last pass.
-  void keepMeans();
   /// The next pass.
   void take(ElementField field);
   /// Of irradiance (N * bands), over all patches and bands, W.
   double reflectedPower(std::span<const double> irradiance) const;
   /// The sum of the sizes of the last pass's changes to all patches, W.
   double moved() const { return moved_; }
-  /// Adds the changes of all further passes, a geometric series by the last two. After two
-  /// passes or more.
+  /// After the last pass: gives patches the means of the solution, with the shape of that pass.
+  void keepMeans();
+  /// After the last of two passes or more: adds the changes of all further ones, a geometric series
+  /// by the last two.
   void extrapolate();
 
   /// Adds the light at a place of a root to `sum` (bands).
@@ -48,7 +49,6 @@ class IndirectSources {
 
  private:
   bool isEvaluated(std::size_t patch) const;
-  void update();
 
   const PatchMesh& mesh_;
   const PatchMaterials& materials_;
@@ -56,10 +56,10 @@ class IndirectSources {
   const ElementLookup& lookup_;
   std::size_t bands_;
   std::span<const double> solved_;
-  ElementField field_;           ///< of the last pass
-  std::vector<double> missing_;  ///< N * bands: is added to the last pass
-  std::vector<double> light_;    ///< N * bands: means with what was missing
-  std::vector<double> before_;   ///< the same, a pass before
+  ElementField field_;          ///< of the last pass
+  std::vector<double> light_;   ///< N * bands: means of the last pass
+  std::vector<double> before_;  ///< the same, a pass before
+  std::vector<double> added_;   ///< N * bands: to the last pass
   double moved_ = 0;
   double moved_before_ = 0;
 };

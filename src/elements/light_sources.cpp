@@ -249,10 +249,9 @@ void LightSources::findSources() {
   sources_ = std::make_unique<SourceMap>(sourcesFrom(indirect));
 }
 
-bool LightSources::emitsIndirectly() const { return report_.direct == DirectLight::hemispheres; }
-
 SourceMap LightSources::sourcesFrom(const IndirectSources& indirect) const {
-  return {surface_, lookup_, materials_, emitsIndirectly(),
+  const bool emission = report_.direct == DirectLight::hemispheres;
+  return {surface_, lookup_, materials_, emission,
           [&](std::size_t root, Vec2 at, std::span<double> sum) {
             lookup_.add(direct_.field, root, at, sum);
             indirect.add(root, at, sum);

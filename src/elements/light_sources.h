@@ -63,7 +63,6 @@ class LightSources {
   void findSources();
   int raysFor(double vertices, int wanted) const;
   void findUses(std::span<const std::uint8_t> wanted);
-  bool emitsIndirectly() const;
   SourceMap sourcesFrom(const IndirectSources& indirect) const;
   double corners(bool shown_alone) const;
   FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool shown_alone);

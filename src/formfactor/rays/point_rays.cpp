@@ -157,9 +157,9 @@ void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<c
   for (std::size_t first = 0; first < to.size(); first += kRayLanes) {
     const auto lanes = std::min(std::size_t(kRayLanes), to.size() - first);
     packet = {};
-    for (std::size_t k = 0; k < kRayLanes; ++k) {
-      valid[k] = k < lanes ? -1 : 0;
-      if (k >= lanes) continue;
+    valid.fill(0);
+    for (std::size_t k = 0; k < lanes; ++k) {
+      valid[k] = -1;
       const glm::vec3 along = embree_.place(to[first + k] * scene_.scale) - start;
       packet.org_x[k] = start.x;
       packet.org_y[k] = start.y;
