@@ -12,6 +12,7 @@ namespace {
 using Pairs = std::vector<std::pair<Index, Index>>;
 
 constexpr std::size_t kAtATime = 256;  // for each task of a thread
+constexpr std::size_t kFew = 32;       // boxes that need no tree
 
 /// Pairs that visit(k, found) appends for each k below `count`, in ascending order.
 template <class Visit>
@@ -66,10 +67,27 @@ void forPairsOfLeaf(const BoxTree& tree, const BoxTree::Node& leaf, const Visit&
   }
 }
 
+/// Calls visit(i, j) for i < j, ascending, of a few overlapping boxes.
+template <class Visit>
+void forPairsOfFew(const std::vector<Box3>& boxes, const Visit& visit) {
+  for (Index i = 0; i < boxes.size(); ++i) {
+    for (Index j = i + 1; j < boxes.size(); ++j) {
+      if (boxes[i].meets(boxes[j])) visit(i, j);
+    }
+  }
+}
+
 }  // namespace
 
 Pairs overlappingPairs(const std::vector<Box3>& boxes, const Progress* progress,
                        const PairFilter& wanted) {
+  if (boxes.size() <= kFew) {
+    Pairs found;
+    forPairsOfFew(boxes, [&](Index i, Index j) {
+      if (!wanted || wanted(i, j)) found.emplace_back(i, j);
+    });
+    return found;
+  }
   const BoxTree tree(boxes);
   return pairsOf(tree.nodes().size(), progress, [&](Index node, Pairs& found) {
     if (tree.nodes()[node].count == 0) return;
@@ -89,6 +107,14 @@ Pairs overlappingPairs(const std::vector<Box3>& boxes, const std::vector<Index>&
   for (const Index i : some) {
     some_boxes.push_back(boxes[i]);
     is_some[i] = 1;
+  }
+  if (boxes.size() <= kFew) {
+    Pairs found;
+    forPairsOfFew(boxes, [&](Index i, Index j) {
+      if (is_some[i] == 0 && is_some[j] == 0) return;
+      if (!wanted || wanted(i, j)) found.emplace_back(i, j);
+    });
+    return found;
   }
   const BoxTree tree(some_boxes);
   return pairsOf(boxes.size(), progress, [&](Index i, Pairs& found) {

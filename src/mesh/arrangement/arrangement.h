@@ -1,6 +1,7 @@
 // The cells into which edges cut the planes.
 #pragma once
 
+#include <boost/container/small_vector.hpp>
 #include <utility>
 #include <vector>
 
@@ -27,8 +28,9 @@ struct EdgeSides {
 };
 
 struct Arrangement {
-  std::vector<PlaneCell> cells;               ///< plane by plane
-  std::vector<std::vector<EdgeSides>> sides;  ///< by edge
+  std::vector<PlaneCell> cells;  ///< plane by plane
+  /// By edge. Most edges have a plane on each side.
+  std::vector<boost::container::small_vector<EdgeSides, 2>> sides;
   /// Sheets with a polygon that crosses itself, so that a part is turned over.
   std::vector<Index> inverted;
 };

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/parallel.h"
 #include "base/union_find.h"
 #include "mesh/arrangement/box_filter.h"
 
@@ -162,12 +163,15 @@ std::vector<Index> Splitter::apply(const Repairs& repairs) {
 }
 
 std::vector<Index> Splitter::pass(const std::vector<Index>& changed, Progress& progress) {
-  for (Index e = Index(boxes_.size()); e < edges_.size(); ++e) {
+  const std::size_t known = boxes_.size();
+  boxes_.resize(edges_.size());
+  parallelFor(edges_.size() - known, 1024, [&](std::size_t k) {
+    const Index e = Index(known + k);
     Box3 box;
     box.add(points_[edges_[e].a]);
     box.add(points_[edges_[e].b]);
-    boxes_.push_back(box.grown(0.5 * coincidence_));
-  }
+    boxes_[e] = box.grown(0.5 * coincidence_);
+  });
   const std::vector<Index> edge_of = edgesBeside(changed);
   std::vector<Box3> boxes;
   std::vector<Index> position(edges_.size(), kNone);
@@ -190,14 +194,21 @@ std::vector<Index> Splitter::pass(const std::vector<Index>& changed, Progress& p
 /// The living edges, ascending, that may meet one of `changed`. A quick filter leaves out most of
 /// those that are far from all of them.
 std::vector<Index> Splitter::edgesBeside(const std::vector<Index>& changed) const {
+  std::vector<Index> out;
+  const auto gather = [&](const auto& may_meet) {
+    for (Index e = 0; e < edges_.size(); ++e) {
+      if (edges_[e].alive() && may_meet(e)) out.push_back(e);
+    }
+  };
+  if (changed.size() == edges_.size()) {
+    gather([](Index) { return true; });
+    return out;
+  }
   std::vector<Box3> near;
   near.reserve(changed.size());
   for (const Index e : changed) near.push_back(boxes_[e]);
   const BoxFilter filter(near);
-  std::vector<Index> out;
-  for (Index e = 0; e < edges_.size(); ++e) {
-    if (edges_[e].alive() && filter.mayMeet(boxes_[e])) out.push_back(e);
-  }
+  gather([&](Index e) { return filter.mayMeet(boxes_[e]); });
   return out;
 }
 

@@ -1,12 +1,15 @@
 #include "mesh/bodies/hollows.h"
 
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "base/geometry/plane_frame.h"
+#include "base/parallel.h"
 #include "base/union_find.h"
 #include "mesh/box_pairs.h"
 
@@ -16,6 +19,7 @@ namespace {
 
 /// Half-planes at an edge whose angles differ by less (radians) may be in either order.
 constexpr double kSameAngle = 1e-5;
+constexpr std::size_t kRingsAtATime = 16384;  // in the order of their angles
 
 /// A cell at an edge: its angle about the edge, from an arbitrary start, and its sides towards
 /// larger and smaller angles.
@@ -25,15 +29,17 @@ struct RingCell {
   Index before;
 };
 
+using Ring = boost::container::small_vector<RingCell, 4>;
+
 /// The cells at an edge in the order of their angles about it (a to b, right-handed).
-std::vector<RingCell> ringOf(const InputFaces& input, const std::vector<Plane>& planes,
-                             const Edge& edge, const std::vector<EdgeSides>& at_edge) {
+Ring ringOf(const InputFaces& input, const std::vector<Plane>& planes, const Edge& edge,
+            std::span<const EdgeSides> at_edge) {
   const Vec3 axis = glm::normalize(input.points[edge.b] - input.points[edge.a]);
   const PlaneFrame across = makeFrame(Vec3(0.0), axis, axisAcross(axis));
   const auto angleOf = [&](const Vec3& inward) {
     return std::atan2(glm::dot(inward, across.v), glm::dot(inward, across.u));
   };
-  std::vector<RingCell> ring;
+  Ring ring;
   for (const EdgeSides& s : at_edge) {
     const Vec3 left = glm::cross(planes[s.plane].normal, axis);
     if (s.left != kNone) ring.push_back({angleOf(left), 2 * s.left + kAbove, 2 * s.left + kBelow});
@@ -48,7 +54,7 @@ std::vector<RingCell> ringOf(const InputFaces& input, const std::vector<Plane>& 
 
 /// Joins the sides that face each other across the gaps between the cells at an edge. If the order
 /// of two cells is uncertain, both of their gaps may be the same one.
-void joinAround(const std::vector<RingCell>& ring, UnionFind& spaces) {
+void joinAround(const Ring& ring, UnionFind& spaces) {
   constexpr double kTurn = 2 * std::numbers::pi;
   for (std::size_t k = 0; k < ring.size(); ++k) {
     const RingCell& here = ring[k];
@@ -86,10 +92,7 @@ class SpaceSearch {
         spaces_(2 * arrangement.cells.size()) {}
 
   std::vector<std::uint8_t> dark() {
-    for (std::size_t e = 0; e < arrangement_.sides.size(); ++e) {
-      if (arrangement_.sides[e].empty()) continue;
-      joinAround(ringOf(input_, planes_, edges_[Index(e)], arrangement_.sides[e]), sets_);
-    }
+    joinAroundEdges();
     addCells();
     addBoxes();
     const std::vector<std::uint8_t> hollow = hollows();
@@ -99,6 +102,21 @@ class SpaceSearch {
   }
 
  private:
+  void joinAroundEdges() {
+    const std::size_t edges = arrangement_.sides.size();
+    std::vector<Ring> rings(std::min(edges, kRingsAtATime));
+    for (std::size_t first = 0; first < edges; first += kRingsAtATime) {
+      const std::size_t count = std::min(edges - first, kRingsAtATime);
+      parallelFor(count, 256, [&](std::size_t k) {
+        const auto& sides = arrangement_.sides[first + k];
+        rings[k].clear();
+        if (sides.empty()) return;
+        rings[k] = ringOf(input_, planes_, edges_[Index(first + k)], {sides.data(), sides.size()});
+      });
+      for (std::size_t k = 0; k < count; ++k) joinAround(rings[k], sets_);
+    }
+  }
+
   const Material& materialOf(Index sheet) const {
     return scene_.materials[scene_.surfaces[sheets_[sheet].surface].material];
   }

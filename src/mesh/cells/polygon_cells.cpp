@@ -169,6 +169,7 @@ std::optional<PolygonCells> regionCells(const CoarseComplex& complex, const Edge
   Region& region = builder.region();
   region.size = size.size;
   region.longest = size.longest;
+  region.improve = size.improve;
   region.clearance = 2 * complex.coincidence;
   auto mesh = meshRegion(region);
   if (!mesh) return std::nullopt;

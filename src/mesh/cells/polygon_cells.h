@@ -30,8 +30,9 @@ struct PolygonCells {
 
 /// The wanted size of cells.
 struct CellSize {
-  double size = 0;     ///< metres, of cells inside polygons
-  double longest = 0;  ///< metres, of any new edge; infinite: no limit
+  double size = 0;      ///< metres, of cells inside polygons
+  double longest = 0;   ///< metres, of any new edge; infinite: no limit
+  bool improve = true;  ///< whether points inside improve angles
 };
 
 /// A grid of convex quadrilaterals if the polygon has four sides with opposite ones cut alike; else

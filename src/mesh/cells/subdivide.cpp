@@ -86,7 +86,8 @@ class Subdivision {
     }
   }
 
-  /// Makes the cells of every polygon; returns their number.
+  /// Makes the cells of every polygon; returns their number. Without `size.improve`, polygons with
+  /// edges to cut or larger than the size are improved nevertheless.
   std::size_t run(const CellSize& size, Rounding rounding, double spacing) {
     for (;;) {
       cuts_.cut(std::isfinite(size.longest) ? size.longest : size.size, rounding, spacing);
@@ -125,6 +126,9 @@ class Subdivision {
   const std::vector<PolygonCells>& cells() const { return cells_; }
 
  private:
+  /// How the cells of a polygon were made: those of plain ones suit any size (isPlain()).
+  enum class Made : char { to_size, plain, plain_as_it_is };
+
   std::size_t recount() {
     count_ = 0;
     for (std::size_t p = 0; p < cells_.size(); ++p) {
@@ -139,20 +143,23 @@ class Subdivision {
     progress_.check();
     progress_.begin("cutting into patches", complex_.polygons.size());
     cells_.resize(complex_.polygons.size());
-    is_plain_.resize(cells_.size(), 0);
+    made_.resize(cells_.size(), Made::to_size);
     std::vector<char> crossed(cells_.size(), 0);
     parallelFor(cells_.size(), 16, [&](std::size_t p) {
       if (progress_.cancelled() || cellSource(complex_, p) != p) return;
       const bool plain = isPlain(p, size);
       cells_[p].groups.clear();
-      if (plain && is_plain_[p]) {
+      CellSize here = size;
+      here.improve = size.improve || !plain;
+      const Made made = !plain ? Made::to_size : here.improve ? Made::plain : Made::plain_as_it_is;
+      if (plain && made_[p] == made) {
         progress_.advance();
         return;
       }
-      is_plain_[p] = 0;
-      if (auto cells = cellsOf(complex_, cuts_, p, size)) {
+      made_[p] = Made::to_size;
+      if (auto cells = cellsOf(complex_, cuts_, p, here)) {
         cells_[p] = std::move(*cells);
-        is_plain_[p] = plain ? 1 : 0;
+        made_[p] = made;
       } else {
         cells_[p] = {};
         crossed[p] = 1;
@@ -181,7 +188,7 @@ class Subdivision {
   std::set<Index> whole_;
   std::vector<double> diameter_;  ///< by polygon, an upper bound
   std::vector<PolygonCells> cells_;
-  std::vector<char> is_plain_;  ///< by polygon: its cells are those of isPlain()
+  std::vector<Made> made_;  ///< by polygon
   std::size_t count_ = 0;
 };
 
@@ -233,10 +240,12 @@ void meetCountJoined(Subdivision& subdivision, double start, double wanted) {
   if (size != last) count(size);
 }
 
-/// Subdivides for patches that will share unknowns: a small polygon needs only one patch, and large
-/// polygons must not be cut more coarsely because of small ones.
+/// Subdivides for patches that will share unknowns: a small polygon needs only one patch, so points
+/// inside that improve the angles of its cells would be for nothing, and large polygons must not be
+/// cut more coarsely because of small ones.
 void cutToShare(Subdivision& subdivision, double size) {
-  subdivision.run({size, std::numeric_limits<double>::infinity()}, Rounding::nearest, kNoOpposites);
+  subdivision.run({size, std::numeric_limits<double>::infinity(), false}, Rounding::nearest,
+                  kNoOpposites);
   subdivision.join(size);
 }
 

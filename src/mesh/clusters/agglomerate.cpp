@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "base/parallel.h"
+
 namespace radiosity {
 
 namespace {
@@ -50,10 +52,13 @@ void Agglomeration::renew() {
   }
   const auto pairOf = [](const Offer& offer) { return std::pair(offer.a, offer.b); };
   std::erase_if(offers_, [](const Offer& offer) { return offer.a == offer.b; });
-  std::ranges::sort(offers_, {}, pairOf);
+  // Offers of one pair may change places: they get the same cost below.
+  parallelSort(offers_, [&](const Offer& x, const Offer& y) { return pairOf(x) < pairOf(y); });
   const auto [first, last] = std::ranges::unique(offers_, {}, pairOf);
   offers_.erase(first, last);
-  for (Offer& offer : offers_) offer.cost = cost(offer.a, offer.b);
+  parallelFor(offers_.size(), 4096, [&](std::size_t k) {
+    offers_[k].cost = cost(offers_[k].a, offers_[k].b);
+  });
 }
 
 void Agglomeration::run(std::size_t wanted, Progress& progress) {

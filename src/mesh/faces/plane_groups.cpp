@@ -5,36 +5,54 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "base/geometry/plane_frame.h"
+#include "base/parallel.h"
 #include "mesh/box_pairs.h"
 
 namespace radiosity {
 
 namespace {
 
-/// Faces whose boxes overlap, as lists of neighbours.
-std::vector<std::vector<Index>> neighbours(const InputFaces& input) {
-  std::vector<Box3> boxes;
-  boxes.reserve(input.faces.size());
-  for (const InputFace& face : input.faces) {
-    Box3 box;
-    for (const Index v : face.loop) box.add(input.points[v]);
-    boxes.push_back(box.grown(0.5 * input.coincidence));
+/// Faces whose boxes overlap: the neighbours of face f are `faces[begin[f]]` to
+/// `faces[begin[f + 1] - 1]`, ascending.
+struct Neighbours {
+  std::vector<std::size_t> begin;
+  std::vector<Index> faces;
+
+  explicit Neighbours(const InputFaces& input) : begin(input.faces.size() + 1, 0) {
+    std::vector<Box3> boxes;
+    boxes.reserve(input.faces.size());
+    for (const InputFace& face : input.faces) {
+      Box3 box;
+      for (const Index v : face.loop) box.add(input.points[v]);
+      boxes.push_back(box.grown(0.5 * input.coincidence));
+    }
+    const auto pairs = overlappingPairs(boxes);
+    for (const auto& [a, b] : pairs) {
+      ++begin[a + 1];
+      ++begin[b + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    faces.resize(begin.back());
+    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+    for (const auto& [a, b] : pairs) {
+      faces[next[a]++] = b;
+      faces[next[b]++] = a;
+    }
   }
-  std::vector<std::vector<Index>> out(input.faces.size());
-  for (const auto& [a, b] : overlappingPairs(boxes)) {
-    out[a].push_back(b);
-    out[b].push_back(a);
+
+  std::span<const Index> of(Index face) const {
+    return std::span(faces).subspan(begin[face], begin[face + 1] - begin[face]);
   }
-  return out;
-}
+};
 
 class Grower {
  public:
   explicit Grower(const InputFaces& input)
       : input_(input),
-        near_(neighbours(input)),
+        near_(input),
         taken_(input.faces.size(), false),
         visit_(input.faces.size(), 0) {}
 
@@ -94,7 +112,7 @@ class Grower {
     visit_[seed] = round_;
     if (isAlone(seed)) return found;
     for (std::size_t k = 0; k < found.size(); ++k) {
-      for (const Index next : near_[found[k]]) {
+      for (const Index next : near_.of(found[k])) {
         if (taken_[next] || visit_[next] == round_ || isAlone(next)) continue;
         visit_[next] = round_;
         if (within(plane, next)) found.push_back(next);
@@ -148,7 +166,7 @@ class Grower {
   }
 
   const InputFaces& input_;
-  std::vector<std::vector<Index>> near_;
+  Neighbours near_;
   std::vector<bool> taken_;
   std::vector<std::size_t> visit_;
   std::size_t round_ = 0;
@@ -160,8 +178,11 @@ std::vector<Plane> groupByPlane(const InputFaces& input) {
   // Large faces come first, since they define their plane best.
   std::vector<Index> order(input.faces.size());
   std::iota(order.begin(), order.end(), Index(0));
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return input.faces[a].area > input.faces[b].area; });
+  parallelSort(order, [&](Index a, Index b) {
+    const double area_a = input.faces[a].area;
+    const double area_b = input.faces[b].area;
+    return area_a > area_b || (area_a == area_b && a < b);
+  });
   Grower grower(input);
   std::vector<Plane> planes;
   for (const Index seed : order) {

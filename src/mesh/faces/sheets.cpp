@@ -37,9 +37,25 @@ SharedEdges sharedEdges(const InputFaces& input, const std::vector<Index>& faces
   return out;
 }
 
+/// The sheet of a lone triangle.
+void addTriangle(const InputFaces& input, Index face, const Sheet& common,
+                 std::vector<Sheet>& out) {
+  const auto& loop = input.faces[face].loop;
+  Sheet& sheet = out.emplace_back(common);
+  sheet.faces = {face};
+  sheet.edges = {{loop[0], loop[1]}, {loop[1], loop[2]}, {loop[2], loop[0]}};
+  std::ranges::sort(sheet.edges, {}, [](const auto& edge) {
+    return std::pair(std::min(edge[0], edge[1]), std::max(edge[0], edge[1]));
+  });
+  for (const Index v : loop) sheet.box.add(input.points[v]);
+}
+
 /// Adds the sheets of faces that already agree in plane, surface and facing.
 void addSheets(const InputFaces& input, const std::vector<Index>& faces, const Sheet& common,
                std::vector<Sheet>& out) {
+  if (faces.size() == 1 && input.faces[faces[0]].loop.size() == 3) {
+    return addTriangle(input, faces[0], common, out);
+  }
   std::map<Index, Index> local;
   for (const Index f : faces) local.emplace(f, Index(local.size()));
   UnionFind together(faces.size());
@@ -103,7 +119,6 @@ Index EdgeTable::obtain(Index a, Index b) {
     edges_.emplace_back();
     edges_.back().a = std::min(a, b);
     edges_.back().b = std::max(a, b);
-    edges_.back().uses.reserve(2);  // most have a sheet on each side
   }
   return it->second;
 }

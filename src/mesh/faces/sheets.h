@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <boost/container/small_vector.hpp>
 #include <cstdint>
 #include <unordered_map>
 #include <utility>
@@ -36,9 +37,10 @@ struct EdgeUse {
 struct Edge {
   Index a = kNone;
   Index b = kNone;
-  std::vector<EdgeUse> uses;  ///< ascending by sheet
-  std::vector<Index>
-      contacts;  ///< planes in which another plane's sheet touches or crosses along it
+  /// Ascending by sheet. Most edges have a sheet on each side.
+  boost::container::small_vector<EdgeUse, 2> uses;
+  /// Planes in which another plane's sheet touches or crosses along it.
+  boost::container::small_vector<Index, 2> contacts;
 
   bool alive() const { return !uses.empty() || !contacts.empty(); }
 };

@@ -18,24 +18,23 @@ namespace {
 
 constexpr std::size_t kEdgesAtATime = 1024;  // for each task of a thread
 
-/// Points by their cell in a cubic grid, and cells by a hash.
+/// Points by their cell in a cubic grid, and rows of cells by a hash.
 class PointGrid {
  public:
   PointGrid(const PatchMesh& mesh, const std::vector<Index>& points, const Vec3& lower, double cell)
-      : mesh_(mesh),
-        lower_(lower),
-        cell_(cell),
+      : lower_(lower),
+        per_metre_(1 / cell),
         mask_(std::bit_ceil(points.size() + 1) - 1),
         begin_(mask_ + 2, 0),
         points_(points.size()) {
-    const auto slotOf = [&](Index vertex) {
-      const auto c = cellOf(mesh_.vertices[vertex]);
-      return slot(c[0], c[1], c[2]);
-    };
-    for (const Index vertex : points) ++begin_[slotOf(vertex) + 1];
+    std::vector<Point> in_order(points.size());
+    parallelFor(points.size(), 1024, [&](std::size_t k) {
+      in_order[k] = {cellOf(mesh.vertices[points[k]]), points[k]};
+    });
+    for (const Point& point : in_order) ++begin_[slot(point.cell) + 1];
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
-    for (const Index vertex : points) points_[next[slotOf(vertex)]++] = vertex;
+    for (const Point& point : in_order) points_[next[slot(point.cell)]++] = point;
   }
 
   /// Calls visit(vertex) once for every point in the cells between `low` and `high`.
@@ -46,11 +45,11 @@ class PointGrid {
     for (long z = a[2]; z <= b[2]; ++z) {
       for (long y = a[1]; y <= b[1]; ++y) {
         for (long x = a[0]; x <= b[0]; ++x) {
-          const std::size_t at = slot(x, y, z);
+          const Cell cell{x, y, z};
+          const std::size_t at = slot(cell);
           for (std::size_t k = begin_[at]; k < begin_[at + 1]; ++k) {
             // Several cells may share a slot.
-            const Index vertex = points_[k];
-            if (cellOf(mesh_.vertices[vertex]) == std::array<long, 3>{x, y, z}) visit(vertex);
+            if (points_[k].cell == cell) visit(points_[k].vertex);
           }
         }
       }
@@ -58,23 +57,28 @@ class PointGrid {
   }
 
  private:
-  std::array<long, 3> cellOf(const Vec3& p) const {
-    const Vec3 c = glm::floor((p - lower_) / cell_);
+  using Cell = std::array<long, 3>;
+  struct Point {
+    Cell cell;
+    Index vertex;
+  };
+
+  Cell cellOf(const Vec3& p) const {
+    const Vec3 c = glm::floor((p - lower_) * per_metre_);
     return {long(c.x), long(c.y), long(c.z)};
   }
-  std::size_t slot(long x, long y, long z) const {
-    const std::uint64_t key = std::uint64_t(x) * 0x9e3779b97f4a7c15ull ^
-                              std::uint64_t(y) * 0xc2b2ae3d27d4eb4full ^
-                              std::uint64_t(z) * 0x165667b19e3779f9ull;
-    return (key ^ key >> 32) & mask_;
+  /// Neighbours in x have neighbouring slots.
+  std::size_t slot(const Cell& cell) const {
+    const std::uint64_t row = std::uint64_t(cell[1]) * 0xc2b2ae3d27d4eb4full ^
+                              std::uint64_t(cell[2]) * 0x165667b19e3779f9ull;
+    return ((row ^ row >> 32) + std::uint64_t(cell[0])) & mask_;
   }
 
-  const PatchMesh& mesh_;
   Vec3 lower_;
-  double cell_;
+  double per_metre_;                ///< cells
   std::size_t mask_;                ///< slots - 1
   std::vector<std::size_t> begin_;  ///< by slot, into points_
-  std::vector<Index> points_;
+  std::vector<Point> points_;
 };
 
 struct Edges {

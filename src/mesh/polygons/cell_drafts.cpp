@@ -72,6 +72,8 @@ void DraftMaker::joinRecords() {
 
 void DraftMaker::sortEdges() {
   drafts_.needed_number.assign(cells_.edges.size(), kNone);
+  std::vector<Index> left;
+  std::vector<Index> right;
   for (std::size_t e = 0; e < cells_.edges.size(); ++e) {
     std::size_t planes_here = 0;
     for (const EdgeSides& s : cells_.arrangement.sides[e]) {
@@ -79,8 +81,8 @@ void DraftMaker::sortEdges() {
     }
     bool needed = false;
     for (const EdgeSides& s : cells_.arrangement.sides[e]) {
-      std::vector<Index> left;
-      std::vector<Index> right;
+      left.clear();
+      right.clear();
       for (const Index r : drafts_.recordsOf(s.left)) left.push_back(drafts_.draft_of[r]);
       for (const Index r : drafts_.recordsOf(s.right)) right.push_back(drafts_.draft_of[r]);
       const auto has = [](const std::vector<Index>& list, Index d) {

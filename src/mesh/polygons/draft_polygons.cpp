@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/parallel.h"
+
 namespace radiosity {
 
 namespace {
@@ -65,10 +67,11 @@ std::vector<std::vector<Index>> DraftPolygons::facesByDraft() const {
       }
     }
   }
-  for (auto& faces : out) {
+  parallelFor(out.size(), 256, [&](std::size_t d) {
+    std::vector<Index>& faces = out[d];
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  }
+  });
   return out;
 }
 
@@ -100,12 +103,13 @@ std::vector<std::pair<Index, Index>> DraftPolygons::facesBeside(
 std::vector<Vec3> DraftPolygons::numberVertices() {
   std::vector<Index> used;
   for (const auto& edge : straight_.edges) used.insert(used.end(), edge.begin(), edge.end());
-  std::sort(used.begin(), used.end(), [&](Index a, Index b) {
+  parallelSort(used);
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  parallelSort(used, [&](Index a, Index b) {
     const Vec3& p = cells_.input.points[a];
     const Vec3& q = cells_.input.points[b];
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
   });
-  used.erase(std::unique(used.begin(), used.end()), used.end());
   number_.assign(cells_.input.points.size(), kNone);
   std::vector<Vec3> out;
   out.reserve(used.size());
@@ -141,20 +145,25 @@ CoarsePolygon DraftPolygons::polygonOf(const Draft& draft, std::vector<Index> fa
 /// The polygons, in an order that does not depend on the order of the file's faces.
 std::vector<CoarsePolygon> DraftPolygons::polygons() const {
   auto faces = facesByDraft();
-  std::vector<std::pair<CoarsePolygon, Index>> made;
-  for (std::size_t d = 0; d < drafts_.list.size(); ++d) {
-    if (!drafts_.list[d].loops.empty())
-      made.emplace_back(polygonOf(drafts_.list[d], std::move(faces[d])), Index(d));
+  std::vector<CoarsePolygon> made(drafts_.list.size());
+  parallelFor(made.size(), 256, [&](std::size_t d) {
+    if (!drafts_.list[d].loops.empty()) made[d] = polygonOf(drafts_.list[d], std::move(faces[d]));
+  });
+  std::vector<Index> order;
+  order.reserve(made.size());
+  for (Index d = 0; d < made.size(); ++d) {
+    if (!made[d].loops.empty()) order.push_back(d);
   }
-  std::sort(made.begin(), made.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.first.surface, a.first.loops) < std::tie(b.first.surface, b.first.loops);
+  parallelSort(order, [&](Index a, Index b) {
+    return std::tie(made[a].surface, made[a].loops, a) <
+           std::tie(made[b].surface, made[b].loops, b);
   });
   std::vector<Index> place(drafts_.list.size(), kNone);
   std::vector<CoarsePolygon> out;
-  out.reserve(made.size());
-  for (auto& [polygon, draft] : made) {
+  out.reserve(order.size());
+  for (const Index draft : order) {
     place[draft] = Index(out.size());
-    out.push_back(std::move(polygon));
+    out.push_back(std::move(made[draft]));
   }
   for (const auto& records : drafts_.records) {
     if (records.size() != 2) continue;

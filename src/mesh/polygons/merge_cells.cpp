@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/geometry/plane_frame.h"
+#include "base/parallel.h"
 #include "mesh/polygons/cell_drafts.h"
 #include "mesh/polygons/draft_polygons.h"
 #include "mesh/polygons/straighten_drafts.h"
@@ -111,9 +112,13 @@ CoarseComplex mergeCells(const Scene& scene, const InputFaces& input,
   Drafts drafts = draftsOf(cells);
   const StraightEdges straight = straightenDrafts(cells, drafts);
   const MergeAccount account(cells, drafts, straight);
-  for (const Draft& draft : drafts.list) {
-    if (isSound(cells, drafts, straight, draft) && account.isAreaKept(draft)) continue;
-    broken.push_back(draft.plane);
+  std::vector<char> good(drafts.list.size(), 0);
+  parallelFor(good.size(), 256, [&](std::size_t d) {
+    const Draft& draft = drafts.list[d];
+    good[d] = isSound(cells, drafts, straight, draft) && account.isAreaKept(draft) ? 1 : 0;
+  });
+  for (std::size_t d = 0; d < good.size(); ++d) {
+    if (good[d] == 0) broken.push_back(drafts.list[d].plane);
   }
   if (!broken.empty()) return {};
   account.countCuts(report);

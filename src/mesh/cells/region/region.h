@@ -20,6 +20,7 @@ struct Region {
   double size = 0;                          ///< wanted distance of points inside
   double longest = std::numeric_limits<double>::infinity();  ///< no new edge is longer
   double clearance = 0;  ///< new points keep farther than this from all pieces
+  bool improve = true;   ///< whether points inside are added and moved to improve angles
 };
 
 /// A triangle (last entry kNone) or a convex quadrilateral, counter-clockwise.
@@ -35,10 +36,10 @@ struct RegionMesh {
 /// than 0.6 of the spacing. Inside is decided by even-odd over the loops.
 std::vector<Vec2> backgroundGrid(const Region& region);
 
-/// Constrained Delaunay triangulation of the region's pieces and a background grid. It is improved
-/// by inner points and moves until all angles are at least 25 degrees, or as large as the boundary
-/// allows; then pairs of triangles are joined. Pieces are never split. Empty if pieces cross or
-/// loops touch.
+/// Constrained Delaunay triangulation of the region's pieces and a background grid. If wanted, it
+/// is improved by inner points and moves until all angles are at least 25 degrees, or as large as
+/// the boundary allows; then pairs of triangles are joined. Pieces are never split. Empty if pieces
+/// cross or loops touch.
 std::optional<RegionMesh> meshRegion(const Region& region);
 
 /// Joins pairs of triangles into convex quadrilaterals with angles within 45 degrees of a right

@@ -23,13 +23,7 @@ class RegionMesher {
   std::optional<RegionMesh> run() {
     if (mesh_.isPlainTriangle()) return RegionMesh{{}, {{2, 0, 1, kNone}}};
     if (!mesh_.triangulate() || !mesh_.tiles()) return std::nullopt;
-    RegionRefiner refiner(mesh_);
-    for (int round = 0; round < kRounds && worst().isBelow(kWantedAngle); ++round) {
-      refiner.refine();
-      smoothInside(mesh_);
-      mesh_.takePositions();
-      mesh_.triangulate();
-    }
+    if (region_.improve) improve();
     flipFlat();
     std::vector<Cell> cells = pairs();
     while (shorten(cells)) cells = pairs();
@@ -37,6 +31,15 @@ class RegionMesher {
   }
 
  private:
+  void improve() {
+    RegionRefiner refiner(mesh_);
+    for (int round = 0; round < kRounds && worst().isBelow(kWantedAngle); ++round) {
+      refiner.refine();
+      smoothInside(mesh_);
+      mesh_.takePositions();
+      mesh_.triangulate();
+    }
+  }
   std::vector<Cell> pairs() const {
     return pairTriangles(region_, mesh_.interior(), mesh_.triangles());
   }
