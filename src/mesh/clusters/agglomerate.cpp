@@ -24,17 +24,12 @@ Agglomeration::Agglomeration(std::vector<Agglomerate> pieces, double bend, doubl
       scale_(1 / (unit * unit * unit * unit)),
       size_(sums_.size()) {}
 
-double Agglomeration::distance2(Index a, Index b, double bend) const {
+float Agglomeration::cost(Index a, Index b) const {
   const Agglomerate& i = sums_[a];
   const Agglomerate& j = sums_[b];
-  return square(i.moment / i.area - j.moment / j.area) +
-         bend * bend * square(i.normals / i.area - j.normals / j.area);
-}
-
-float Agglomeration::cost(Index a, Index b) const {
-  const double i = sums_[a].area;
-  const double j = sums_[b].area;
-  return float(scale_ * (i * j / (i + j)) * distance2(a, b, bend_));
+  const double distance2 = square(i.moment / i.area - j.moment / j.area) +
+                           bend_ * bend_ * square(i.normals / i.area - j.normals / j.area);
+  return float(scale_ * (i.area * j.area / (i.area + j.area)) * distance2);
 }
 
 void Agglomeration::offer(Index a, Index b) {
@@ -56,38 +51,52 @@ void Agglomeration::renew() {
   parallelSort(offers_, [&](const Offer& x, const Offer& y) { return pairOf(x) < pairOf(y); });
   const auto [first, last] = std::ranges::unique(offers_, {}, pairOf);
   offers_.erase(first, last);
-  parallelFor(offers_.size(), 4096, [&](std::size_t k) {
-    offers_[k].cost = cost(offers_[k].a, offers_[k].b);
-  });
+  parallelFor(offers_.size(), 4096,
+              [&](std::size_t k) { offers_[k].cost = cost(offers_[k].a, offers_[k].b); });
+}
+
+/// The cheapest of the sorted offers from `next` on and of a heap of those that have become dearer,
+/// which leaves its list.
+Agglomeration::Offer Agglomeration::takeCheapest(std::size_t& next, std::vector<Offer>& dearer) {
+  if (dearer.empty() || (next < offers_.size() && dearer.front() > offers_[next])) {
+    return offers_[next++];
+  }
+  std::pop_heap(dearer.begin(), dearer.end(), std::greater<>());
+  const Offer offer = dearer.back();
+  dearer.pop_back();
+  return offer;
 }
 
 void Agglomeration::run(std::size_t wanted, Progress& progress) {
   renew();
-  const std::greater<> last;
-  std::make_heap(offers_.begin(), offers_.end(), last);
+  // Most offers are taken in the order of their sorting; a heap of all would be slower.
+  parallelSort(offers_, [](const Offer& x, const Offer& y) { return y > x; });
+  std::size_t next = 0;
+  std::vector<Offer> dearer;
   std::size_t before = size_;
-  for (std::size_t step = 1; !offers_.empty() && size_ > wanted; ++step) {
+  for (std::size_t step = 1; size_ > wanted; ++step) {
+    if (next == offers_.size() && dearer.empty()) break;
     if (step % kStepsPerCheck == 0) {
       progress.check();
       progress.advance(std::exchange(before, size_) - size_);
     }
-    std::pop_heap(offers_.begin(), offers_.end(), last);
-    const Offer offer = offers_.back();
-    offers_.pop_back();
+    const Offer offer = takeCheapest(next, dearer);
     Index a = parts_.find(offer.a);
     Index b = parts_.find(offer.b);
     if (a == b) continue;
     if (b < a) std::swap(a, b);
     const float now = cost(a, b);
     if (now > offer.cost) {
-      offers_.push_back({now, a, b});
-      std::push_heap(offers_.begin(), offers_.end(), last);
+      dearer.push_back({now, a, b});
+      std::push_heap(dearer.begin(), dearer.end(), std::greater<>());
       continue;
     }
     sums_[a] += sums_[b];
     parts_.unite(a, b);
     --size_;
   }
+  offers_.erase(offers_.begin(), offers_.begin() + std::ptrdiff_t(next));
+  offers_.insert(offers_.end(), dearer.begin(), dearer.end());
   progress.advance(before - size_);
 }
 

@@ -29,10 +29,10 @@ struct Agglomerate {
 ///
 ///     A_I A_J / (A_I + A_J) * (|c_I - c_J|^2 + bend^2 |n_I - n_J|^2).
 ///
-/// A heap has the pairs by this cost. A pair whose cost has risen since is put back; a pair whose
-/// cost has fallen is taken when its turn comes. There are no lists of neighbours: if each run()
-/// halves the number, there are as many pairs as wholes, and all takes O(n log n). Ties are broken
-/// by the number of the first, then of the second of the pair.
+/// Pairs are taken in the order of this cost. A pair whose cost has risen since is put back; a pair
+/// whose cost has fallen is taken when its turn comes. There are no lists of neighbours: if each
+/// run() halves the number, there are as many pairs as wholes, and all takes O(n log n). Ties are
+/// broken by the number of the first, then of the second of the pair.
 class Agglomeration {
  public:
   /// `unit`: a typical length of the costs, so that they fit into 32 bits.
@@ -49,8 +49,6 @@ class Agglomeration {
   Index of(Index k) { return parts_.find(k); }
   /// The sums of a whole, by the piece that represents it.
   const Agglomerate& at(Index k) const { return sums_[k]; }
-  /// |c_I - c_J|^2 + bend^2 |n_I - n_J|^2 of two wholes, with any `bend`.
-  double distance2(Index a, Index b, double bend) const;
 
  private:
   struct Offer {
@@ -62,6 +60,7 @@ class Agglomeration {
     }
   };
   float cost(Index a, Index b) const;
+  Offer takeCheapest(std::size_t& next, std::vector<Offer>& dearer);
   /// Keeps each pair once, with its present cost: clusters meet along many edges.
   void renew();
 

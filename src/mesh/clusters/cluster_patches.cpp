@@ -144,13 +144,10 @@ class FrontClusters {
     std::vector<NearestTree::Point> points;
     points.reserve(clusters.size());
     for (const Index k : clusters) points.push_back(placeOf(parts_.at(k)));
-    const NearestTree tree(std::move(points));
-    const auto distance2 = [&](Index a, Index b) {
-      return parts_.distance2(clusters[a], clusters[b], bend_);
-    };
+    const NearestTree tree(points);
     std::vector<std::vector<Index>> nearest(clusters.size());
     parallelFor(clusters.size(), 64, [&](std::size_t c) {
-      if (!progress.cancelled()) nearest[c] = tree.nearestTo(Index(c), kNearest, distance2);
+      if (!progress.cancelled()) nearest[c] = tree.nearestTo(Index(c), kNearest);
     });
     progress.check();
     for (std::size_t c = 0; c < clusters.size(); ++c) {
@@ -158,7 +155,7 @@ class FrontClusters {
     }
   }
 
-  /// The place of a cluster in the space of distance2().
+  /// The place of a cluster in the space of centroids and `bend_` times normals.
   NearestTree::Point placeOf(const Agglomerate& cluster) const {
     const Vec3 centroid = cluster.moment / cluster.area;
     const Vec3 turn = bend_ * (cluster.normals / cluster.area);

@@ -1,11 +1,7 @@
 // The nearest points in space and direction at once.
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <limits>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "radiosity/base.h"
@@ -19,47 +15,11 @@ class NearestTree {
   static constexpr std::size_t kDimensions = 6;
   using Point = std::array<double, kDimensions>;
 
-  explicit NearestTree(std::vector<Point> points);
+  explicit NearestTree(const std::vector<Point>& points);
 
   /// The `count` nearest of the other points to point k, or all if they are fewer: the smallest
-  /// pairs of distance2(k, other) and `other`, ascending. `distance2` is the square of the distance
-  /// to within rounding.
-  template <class Distance2>
-  std::vector<Index> nearestTo(Index k, std::size_t count, const Distance2& distance2) const {
-    std::vector<std::pair<double, Index>> found;  // ascending
-    double most = std::numeric_limits<double>::infinity();
-    const Point& here = points_[k];
-    // Children are pushed farther first, so that the nearer one lowers `most` for the other.
-    std::array<std::pair<double, Index>, kMostWaiting> waiting;
-    std::size_t height = 0;
-    waiting[height++] = {0.0, 0};
-    while (height > 0) {
-      const auto [away2, number] = waiting[--height];
-      if (away2 > most) continue;
-      const Node& node = nodes_[number];
-      if (node.second == 0) {
-        for (Index at = node.begin; at < node.end; ++at) {
-          const Index other = order_[at];
-          if (other == k) continue;
-          const std::pair next{distance2(k, other), other};
-          if (found.size() == count && next > found.back()) continue;
-          found.insert(std::lower_bound(found.begin(), found.end(), next), next);
-          if (found.size() > count) found.pop_back();
-          if (found.size() == count) most = found.back().first;
-        }
-        continue;
-      }
-      std::pair first{away2Of(nodes_[number + 1], here), number + 1};
-      std::pair second{away2Of(nodes_[node.second], here), node.second};
-      if (first.first < second.first) std::swap(first, second);
-      waiting[height++] = first;
-      waiting[height++] = second;
-    }
-    std::vector<Index> nearest;
-    nearest.reserve(found.size());
-    for (const auto& [far, other] : found) nearest.push_back(other);
-    return nearest;
-  }
+  /// pairs of squared distance and number, ascending.
+  std::vector<Index> nearestTo(Index k, std::size_t count) const;
 
  private:
   struct Node {
@@ -72,12 +32,16 @@ class NearestTree {
   /// Each level halves the points, and one node a level waits.
   static constexpr std::size_t kMostWaiting = 34;
 
-  Index build(Index begin, Index end);
-  /// A lower bound for the square of the distance of `here` from the points of a node.
+  Index build(const std::vector<Point>& points, Index begin, Index end);
+  /// The square of the distance of `here` from the box of a node: in each term no more than that of
+  /// any of its points, so that the sum is no more, either, for all its rounding.
   static double away2Of(const Node& node, const Point& here);
 
-  std::vector<Point> points_;
-  std::vector<Index> order_;
+  static double distance2(const Point& a, const Point& b);
+
+  std::vector<Index> order_;   ///< numbers of points, node by node
+  std::vector<Point> points_;  ///< in that order
+  std::vector<Index> at_;      ///< by number: place in that order
   std::vector<Node> nodes_;
 };
 
