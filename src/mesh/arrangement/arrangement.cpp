@@ -6,9 +6,9 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <map>
 #include <unordered_map>
 
 #include "mesh/plane_image.h"
@@ -48,6 +48,7 @@ class PlaneCutter {
   void run();
 
  private:
+  bool cutTriangle();
   bool insertVertices();
   bool insertEdges();
   bool reportTouches();
@@ -55,6 +56,8 @@ class PlaneCutter {
   void findRegions();
   void coverRegions();
   void makeCells();
+  void makeCell(const Cover& cover);
+  void addToCell(PlaneCell& cell, const Vec3& a, const Vec3& b, const Vec3& c) const;
   void recordSides();
   Cover stepOver(const Cover& from, Index edge, bool to_left) const;
   Index edgeBetween(ArrangementTriangulation::Face_handle face, int k) const {
@@ -78,6 +81,7 @@ class PlaneCutter {
 };
 
 void PlaneCutter::run() {
+  if (own_.size() == 3 && cutTriangle()) return;
   if (!insertVertices()) return;
   if (!insertEdges()) return reportCrossings();
   if (reportTouches()) return;
@@ -87,6 +91,42 @@ void PlaneCutter::run() {
   coverRegions();
   makeCells();
   recordSides();
+}
+
+/// Cuts a plane whose edges are those of one triangle, as most planes of curved surfaces are. False
+/// if they are not, or if the sheets do not cover the triangle seen from every edge.
+bool PlaneCutter::cutTriangle() {
+  std::array<Index, 3> corners{edges_[own_[0]].a, edges_[own_[0]].b, kNone};
+  const Edge& next = edges_[own_[1]];
+  const bool from_a = next.a == corners[0] || next.a == corners[1];
+  corners[2] = from_a ? next.b : next.a;
+  for (const Index e : own_) {
+    for (const Index v : {edges_[e].a, edges_[e].b}) {
+      if (std::ranges::find(corners, v) == corners.end()) return false;
+    }
+  }
+  const auto turn = CGAL::orientation(toKernel(frame_(points_[corners[0]])),
+                                      toKernel(frame_(points_[corners[1]])),
+                                      toKernel(frame_(points_[corners[2]])));
+  if (turn == CGAL::COLLINEAR) return false;
+  if (turn == CGAL::RIGHT_TURN) std::swap(corners[0], corners[1]);
+  const auto isLeft = [&](Index e) {
+    const auto at = std::ranges::find(corners, edges_[e].a) - corners.begin();
+    return corners[std::size_t(at + 1) % 3] == edges_[e].b;
+  };
+  const Cover cover = stepOver({}, own_[0], isLeft(own_[0]));
+  for (const Index e : own_) {
+    if (stepOver({}, e, isLeft(e)) != cover) return false;
+  }
+  out_.done = true;
+  if (cover.empty()) return true;
+  makeCell(cover);
+  addToCell(out_.cells[0], points_[corners[0]], points_[corners[1]], points_[corners[2]]);
+  for (const Index e : own_) {
+    const bool left = isLeft(e);
+    out_.sides.emplace_back(e, EdgeSides{number_, left ? 0 : kNone, left ? kNone : 0});
+  }
+  return true;
 }
 
 /// False if two vertices have the same image: one above the other within the plane's slab.
@@ -199,16 +239,19 @@ void PlaneCutter::findRegions() {
 
 /// The cover across an edge: a sheet lies on the left of its border, seen from its front.
 Cover PlaneCutter::stepOver(const Cover& from, Index edge, bool to_left) const {
-  std::map<Index, int> counts(from.begin(), from.end());
+  Cover out = from;
   for (const EdgeUse& use : edges_[edge].uses) {
     if (sheets_[use.sheet].plane != number_) continue;
+    const auto at = std::ranges::lower_bound(out, use.sheet, {}, &std::pair<Index, int>::first);
     // Layers of a sheet that faces down have a negative count.
-    counts[use.sheet] += to_left ? use.count : -use.count;
+    const int count = to_left ? use.count : -use.count;
+    if (at == out.end() || at->first != use.sheet) {
+      out.insert(at, {use.sheet, count});
+    } else {
+      at->second += count;
+    }
   }
-  Cover out;
-  for (const auto& [sheet, count] : counts) {
-    if (count != 0) out.emplace_back(sheet, count);
-  }
+  std::erase_if(out, [](const auto& layers) { return layers.second == 0; });
   return out;
 }
 
@@ -251,33 +294,38 @@ void PlaneCutter::makeCells() {
   for (std::size_t r = 1; r < cover_.size(); ++r) {
     if (cover_[r].empty()) continue;
     cell_of_[r] = Index(out_.cells.size());
-    PlaneCell cell;
-    cell.plane = number_;
-    for (const auto& [sheet, count] : cover_[r]) {
-      const int layers = count * sheets_[sheet].facing;
-      if (layers < 0) out_.inverted.push_back(sheet);
-      cell.cover.emplace_back(sheet, std::abs(layers));
-    }
-    out_.cells.push_back(std::move(cell));
+    makeCell(cover_[r]);
   }
   for (const auto face : triangulation_.finite_face_handles()) {
     if (cell_of_[face->info()] == kNone) continue;
-    PlaneCell& cell = out_.cells[cell_of_[face->info()]];
-    const Vec3& a = points_[face->vertex(0)->info()];
-    const Vec3& b = points_[face->vertex(1)->info()];
-    const Vec3& c = points_[face->vertex(2)->info()];
-    // Areas along the plane's normal, so that parts add up to the whole to the last bits.
-    const double area = 0.5 * glm::dot(glm::cross(b - a, c - a), plane_.normal);
-    cell.area += area;
-    const double rim = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
-    const double inscribed = 2.0 * area / rim;
-    if (inscribed > cell.room) {
-      cell.room = inscribed;
-      // The incentre: weights are the opposite sides.
-      cell.sample =
-          (glm::distance(b, c) * a + glm::distance(c, a) * b + glm::distance(a, b) * c) / rim;
-    }
+    addToCell(out_.cells[cell_of_[face->info()]], points_[face->vertex(0)->info()],
+              points_[face->vertex(1)->info()], points_[face->vertex(2)->info()]);
   }
+}
+
+void PlaneCutter::makeCell(const Cover& cover) {
+  PlaneCell& cell = out_.cells.emplace_back();
+  cell.plane = number_;
+  cell.cover.reserve(cover.size());
+  for (const auto& [sheet, count] : cover) {
+    const int layers = count * sheets_[sheet].facing;
+    if (layers < 0) out_.inverted.push_back(sheet);
+    cell.cover.emplace_back(sheet, std::abs(layers));
+  }
+}
+
+/// Adds a triangle to its cell.
+void PlaneCutter::addToCell(PlaneCell& cell, const Vec3& a, const Vec3& b, const Vec3& c) const {
+  // Areas along the plane's normal, so that parts add up to the whole to the last bits.
+  const double area = 0.5 * glm::dot(glm::cross(b - a, c - a), plane_.normal);
+  cell.area += area;
+  const double rim = glm::distance(a, b) + glm::distance(b, c) + glm::distance(c, a);
+  const double inscribed = 2.0 * area / rim;
+  if (inscribed <= cell.room) return;
+  cell.room = inscribed;
+  // The incentre: weights are the opposite sides.
+  cell.sample =
+      (glm::distance(b, c) * a + glm::distance(c, a) * b + glm::distance(a, b) * c) / rim;
 }
 
 void PlaneCutter::recordSides() {
