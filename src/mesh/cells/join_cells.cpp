@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <map>
 #include <queue>
-#include <set>
 #include <utility>
 
 #include "base/geometry/plane_frame.h"
@@ -26,10 +24,13 @@ class CellJoiner {
              std::span<const Vec3> points, double size)
       : points_(points), size_(size) {
     for (const auto& [from, to] : inner) {
-      kept_.insert({from, to});
-      kept_.insert({to, from});
+      kept_.emplace_back(from, to);
+      kept_.emplace_back(to, from);
     }
+    std::ranges::sort(kept_);
+    patches_.reserve(cells.size());
     for (Index c = 0; c < cells.size(); ++c) add(cells[c], c);
+    std::ranges::sort(owner_, {}, &Owner::edge);
   }
 
   std::vector<CellGroup> run() {
@@ -71,13 +72,21 @@ class CellJoiner {
       patch.moment += area * (a + b + d) / 3.0;
     }
     patch.shape = shapeOf(outline, patch.area);
-    own(c);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      owner_.push_back({{outline[i], outline[(i + 1) % outline.size()]}, c});
+    }
+  }
+
+  /// The patch on the left of a directed edge, or nullptr.
+  Index* ownerOf(const CornerPair& edge) {
+    const auto at = std::ranges::lower_bound(owner_, edge, {}, &Owner::edge);
+    return at != owner_.end() && at->edge == edge ? &at->patch : nullptr;
   }
 
   void own(Index k) {
     const std::vector<Index>& outline = patches_[k].group.outline;
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      owner_[{outline[i], outline[(i + 1) % outline.size()]}] = k;
+      *ownerOf({outline[i], outline[(i + 1) % outline.size()]}) = k;
     }
   }
 
@@ -138,23 +147,31 @@ class CellJoiner {
   }
 
   /// Ascending.
-  std::set<Index> neighbours(Index k) const {
-    std::set<Index> out;
+  std::vector<Index> neighbours(Index k) {
+    std::vector<Index> out;
     const std::vector<Index>& outline = patches_[k].group.outline;
     for (std::size_t i = 0; i < outline.size(); ++i) {
       const CornerPair across(outline[(i + 1) % outline.size()], outline[i]);
-      const auto found = owner_.find(across);
-      if (found != owner_.end() && kept_.count(across) == 0) out.insert(found->second);
+      const Index* const owner = ownerOf(across);
+      if (owner == nullptr || *owner == k || std::ranges::binary_search(kept_, across)) continue;
+      out.push_back(*owner);
     }
-    out.erase(k);
+    std::ranges::sort(out);
+    out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
   }
 
+  /// A directed edge and the patch on its left.
+  struct Owner {
+    CornerPair edge;
+    Index patch;
+  };
+
   std::span<const Vec3> points_;
   double size_;
-  std::set<CornerPair> kept_;
+  std::vector<CornerPair> kept_;  ///< ascending
   std::vector<Patch> patches_;
-  std::map<CornerPair, Index> owner_;  ///< by directed edge: the patch on the left
+  std::vector<Owner> owner_;  ///< ascending by edge
 };
 
 /// If a corner of the cells is inside the patch, sets triangles between the corners of its outline,

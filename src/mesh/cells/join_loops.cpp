@@ -1,32 +1,47 @@
 #include "mesh/cells/join_loops.h"
 
-#include <map>
-#include <set>
+#include <algorithm>
 #include <utility>
 
 namespace radiosity {
 
-std::vector<Index> joinLoops(const std::vector<Index>& a, const std::vector<Index>& b) {
-  std::set<std::pair<Index, Index>> edges;
+namespace {
+
+using LoopEdges = std::vector<std::pair<Index, Index>>;
+
+/// The directed edges of both loops but for those that run in opposite directions, ascending.
+LoopEdges edgesOfUnion(const std::vector<Index>& a, const std::vector<Index>& b) {
+  LoopEdges edges;
+  edges.reserve(a.size() + b.size());
   for (const std::vector<Index>* loop : {&a, &b}) {
     for (std::size_t k = 0; k < loop->size(); ++k) {
-      const std::pair<Index, Index> edge((*loop)[k], (*loop)[(k + 1) % loop->size()]);
-      if (edges.erase({edge.second, edge.first}) == 0) edges.insert(edge);
+      edges.emplace_back((*loop)[k], (*loop)[(k + 1) % loop->size()]);
     }
   }
-  std::map<Index, Index> next;
-  for (const auto& [from, to] : edges) {
-    if (!next.emplace(from, to).second) return {};
-  }
-  if (next.empty()) return {};
-  std::vector<Index> loop{next.begin()->first};
-  for (std::size_t steps = 0; steps < next.size(); ++steps) {
-    const auto step = next.find(loop.back());
-    if (step == next.end()) return {};
+  std::ranges::sort(edges);
+  const LoopEdges all = edges;
+  std::erase_if(edges, [&](const auto& edge) {
+    return std::ranges::binary_search(all, std::pair(edge.second, edge.first));
+  });
+  return edges;
+}
+
+}  // namespace
+
+std::vector<Index> joinLoops(const std::vector<Index>& a, const std::vector<Index>& b) {
+  const LoopEdges edges = edgesOfUnion(a, b);
+  const auto sameStart = [](const auto& x, const auto& y) { return x.first == y.first; };
+  if (edges.empty() || std::ranges::adjacent_find(edges, sameStart) != edges.end()) return {};
+  std::vector<Index> loop{edges.front().first};
+  loop.reserve(edges.size());
+  for (std::size_t steps = 0; steps < edges.size(); ++steps) {
+    const auto step =
+        std::ranges::lower_bound(edges, loop.back(), {}, &LoopEdges::value_type::first);
+    if (step == edges.end() || step->first != loop.back()) return {};
     if (step->second == loop.front()) break;
     loop.push_back(step->second);
   }
-  if (loop.size() != next.size()) return {};
+  if (loop.size() != edges.size()) return {};
   return loop;
 }
 
