@@ -35,8 +35,9 @@ struct Wing {
 /// is an edge, so no other cell passes there.
 UnionFind joinSpaces(const Arrangement& arrangement) {
   UnionFind spaces(2 * arrangement.cells.size());
+  std::vector<Wing> wings;
   for (const auto& at_edge : arrangement.sides) {
-    std::vector<Wing> wings;
+    wings.clear();
     for (const EdgeSides& s : at_edge) {
       // About the edge from a to b, a cell on its left has larger angles above.
       if (s.left != kNone) wings.push_back({2 * s.left + kAbove, 2 * s.left + kBelow});
