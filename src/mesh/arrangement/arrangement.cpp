@@ -324,8 +324,7 @@ void PlaneCutter::addToCell(PlaneCell& cell, const Vec3& a, const Vec3& b, const
   if (inscribed <= cell.room) return;
   cell.room = inscribed;
   // The incentre: weights are the opposite sides.
-  cell.sample =
-      (glm::distance(b, c) * a + glm::distance(c, a) * b + glm::distance(a, b) * c) / rim;
+  cell.sample = (glm::distance(b, c) * a + glm::distance(c, a) * b + glm::distance(a, b) * c) / rim;
 }
 
 void PlaneCutter::recordSides() {
