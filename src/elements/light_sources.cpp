@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
+#include <string>
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
@@ -232,16 +233,19 @@ void LightSources::findSources() {
   const bool shared = mesh_.clusters.has_value();
   const int wanted = options_.rays / (shared ? 8 : 4);
   const int rays = raysFor(kFirstShare * corners(false), std::max(16, wanted));
-  const auto pass = [&] {
-    FieldSummary field = onePass(sourcesFrom(indirect), rays, kUncut, false);
+  const auto pass = [&](int number) {
+    const std::string stage = number == 1
+                                  ? "sources of indirect light"
+                                  : fmt::format("sources of indirect light, pass {}", number);
+    FieldSummary field = onePass(sourcesFrom(indirect), rays, kUncut, stage, false);
     report_.rays += double(field.evaluated) * rays;
     report_.indirect_vertices += field.evaluated;
     indirect.take(std::move(field.field));
   };
-  pass();
+  pass(1);
   if (shared) {
     const double little = kSettled * indirect.reflectedPower(indirect_);
-    for (int k = 1; k < kMostPasses && (k == 1 || indirect.moved() > little); ++k) pass();
+    for (int k = 2; k <= kMostPasses && (k == 2 || indirect.moved() > little); ++k) pass(k);
     indirect.extrapolate();
   } else {
     indirect.keepMeans();
@@ -263,8 +267,8 @@ ElementField LightSources::indirectField() {
   const int rays = raysFor(kTestedShare * corners(true), options_.rays);
   // With Owen-scrambled points 1,024 rays have an error of about 1%.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
-  FieldSummary second =
-      onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise), true);
+  FieldSummary second = onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise),
+                                "indirect light", true);
   take(second);
   report_.rays += double(second.evaluated) * rays;
   report_.rays_a_vertex = rays;
@@ -287,7 +291,7 @@ double LightSources::corners(bool shown_alone) const {
 }
 
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
-                                   bool shown_alone) {
+                                   const std::string& stage, bool shown_alone) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
   // Only for the last pass; so many that all points could take them within a fourth of most_rays.
   const int more_rays =
@@ -306,8 +310,7 @@ FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double to
   how.other_light = direct_of_patch_;
   how.patch_light = indirect_;
   FieldSummary field =
-      buildField(mesh_, indirect_surface_, light, how, int(bands_),
-                 shown_alone ? "indirect light" : "sources of indirect light", progress_);
+      buildField(mesh_, indirect_surface_, light, how, int(bands_), stage, progress_);
   report_.rays += double(light.repeated()) * more_rays;
   return field;
 }

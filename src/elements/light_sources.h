@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "elements/direct_light.h"
@@ -65,7 +66,8 @@ class LightSources {
   void findUses(std::span<const std::uint8_t> wanted);
   SourceMap sourcesFrom(const IndirectSources& indirect) const;
   double corners(bool shown_alone) const;
-  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance, bool shown_alone);
+  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance,
+                       const std::string& stage, bool shown_alone);
 
   const PatchMesh& mesh_;
   const PatchMaterials& materials_;
