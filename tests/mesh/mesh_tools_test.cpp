@@ -6,12 +6,16 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <optional>
 #include <random>
 
+#include "base/geometry/plane_frame.h"
 #include "mesh/arrangement/box_filter.h"
 #include "mesh/arrangement/edge_rows.h"
+#include "mesh/box_pairs.h"
 #include "mesh/cells/join_cells.h"
 #include "mesh/cells/join_loops.h"
+#include "mesh/cells/region/region.h"
 #include "mesh/cells/sharp_corners.h"
 #include "mesh/patches/face_locator.h"
 #include "scene/checks/winding_tree.h"
@@ -176,8 +180,65 @@ TEST(JoinLoops, GiveTheOutlineOfBothOrNothing) {
   // Seven squares around an eighth, on rows of four points, and the one that closes the ring.
   EXPECT_EQ(joinLoops({0, 1, 2, 3, 7, 11, 15, 14, 10, 6, 5, 9, 13, 12, 8, 4}, {9, 10, 14, 13}),
             Loop());
-  // The same region twice, the other way round: nothing is left.
+  // The same region twice, and the other way round: nothing is left.
+  EXPECT_EQ(joinLoops({0, 1, 2}, {1, 2, 0}), (Loop{0, 1, 2}));
   EXPECT_EQ(joinLoops({0, 1, 2}, {2, 1, 0}), Loop());
+}
+
+using IndexPairs = std::vector<std::pair<Index, Index>>;
+
+// A few boxes are searched one by one, more by a tree.
+TEST(BoxPairs, AreThoseOfASearchOfAllPairs) {
+  Random random(7);
+  for (const Index count : {0u, 1u, 2u, 20u, 32u, 33u, 400u}) {
+    std::vector<Box3> boxes(count);
+    std::vector<Index> some;
+    for (Index i = 0; i < count; ++i) {
+      const Vec3 low = random.point();
+      boxes[i] = {low, low + 0.3 * random.point()};
+      if (i % 3 == 1) some.push_back(i);
+    }
+    IndexPairs all;
+    IndexPairs with_some;
+    IndexPairs wanted;
+    for (Index i = 0; i < count; ++i) {
+      for (Index j = i + 1; j < count; ++j) {
+        if (!boxes[i].meets(boxes[j])) continue;
+        all.emplace_back(i, j);
+        if (i % 3 == 1 || j % 3 == 1) with_some.emplace_back(i, j);
+        if ((i + j) % 2 == 0) wanted.emplace_back(i, j);
+      }
+    }
+    EXPECT_EQ(overlappingPairs(boxes), all) << count;
+    EXPECT_EQ(overlappingPairs(boxes, some), with_some) << count;
+    const auto even = [](Index i, Index j) { return (i + j) % 2 == 0; };
+    EXPECT_EQ(overlappingPairs(boxes, nullptr, even), wanted) << count;
+  }
+}
+
+// A square with short pieces in one side, from which thin triangles go to far points.
+TEST(MeshRegion, HasInnerPointsOnlyIfAnglesAreToImprove) {
+  Region region;
+  region.points = {{0, 0},   {1, 0}, {2, 0},   {2, 1}, {2, 2},
+                   {1.1, 2}, {1, 2}, {0.9, 2}, {0, 2}, {0, 1}};
+  region.loops = {{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}};
+  region.size = 10;
+  for (const bool improve : {false, true}) {
+    region.improve = improve;
+    const std::optional<RegionMesh> mesh = meshRegion(region);
+    ASSERT_TRUE(mesh);
+    EXPECT_EQ(mesh->interior.empty(), !improve);
+    double area = 0;
+    std::vector<Vec2> points = region.points;
+    points.insert(points.end(), mesh->interior.begin(), mesh->interior.end());
+    for (const Cell& cell : mesh->cells) {
+      for (std::size_t k = 2; k < (cell[3] == kNone ? 3u : 4u); ++k) {
+        area +=
+            0.5 * cross2(points[cell[k - 1]] - points[cell[0]], points[cell[k]] - points[cell[0]]);
+      }
+    }
+    EXPECT_NEAR(area, 4, 1e-14);  // some roundings of a sum of 4
+  }
 }
 
 /// A grid of `n` x `n` unit squares, turned in space and numbered along its rows.

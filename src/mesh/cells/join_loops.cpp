@@ -19,6 +19,7 @@ LoopEdges edgesOfUnion(const std::vector<Index>& a, const std::vector<Index>& b)
     }
   }
   std::ranges::sort(edges);
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   const LoopEdges all = edges;
   std::erase_if(edges, [&](const auto& edge) {
     return std::ranges::binary_search(all, std::pair(edge.second, edge.first));
