@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <utility>
+#include <vector>
 
 #include "base/image_codec.h"
 #include "base/input_file.h"
@@ -23,6 +25,25 @@ TextureResult withProblem(std::string problem) {
   result.problem = std::move(problem);
   return result;
 }
+
+/// The inverse of the sRGB curve. It is kept for the samples that came last: an image of integers
+/// has few different ones.
+class LinearSamples {
+ public:
+  float operator()(float coded) {
+    const double place = std::clamp(double(coded), 0.0, 1.0) * double(kept_.size() - 1);
+    Kept& kept = kept_[std::size_t(std::lround(place))];
+    if (kept.coded != coded) kept = {coded, float(linearFromSrgb(coded))};
+    return kept.linear;
+  }
+
+ private:
+  struct Kept {
+    float coded = std::numeric_limits<float>::quiet_NaN();  // equals no sample
+    float linear = 0;
+  };
+  std::vector<Kept> kept_ = std::vector<Kept>(65536);  // those of 16 bits have a place each
+};
 
 TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   TextureResult result;
@@ -48,10 +69,11 @@ TextureResult textureFrom(const DecodedImage& image, const std::string& name) {
   result.has_alpha = channels == 2 || channels == 4;
   // Integer samples are for display and have the sRGB curve.
   const bool encoded = !image.floating && !image.linear;
+  LinearSamples linear;
   for (std::size_t p = 0; p < pixels; ++p) {
     for (std::size_t band = 0; band < 3; ++band) {
       const float sample = image.samples[p * channels + (channels >= 3 ? band : 0)];
-      texture.texels[p * 3 + band] = encoded ? float(linearFromSrgb(sample)) : sample;
+      texture.texels[p * 3 + band] = encoded ? linear(sample) : sample;
     }
   }
   const bool usable = std::all_of(texture.texels.begin(), texture.texels.end(),
