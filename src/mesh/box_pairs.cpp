@@ -67,14 +67,16 @@ void forPairsOfLeaf(const BoxTree& tree, const BoxTree::Node& leaf, const Visit&
   }
 }
 
-/// Calls visit(i, j) for i < j, ascending, of a few overlapping boxes.
-template <class Visit>
-void forPairsOfFew(const std::vector<Box3>& boxes, const Visit& visit) {
+/// The overlapping pairs of a few boxes for which wanted(i, j), i < j, is true, ascending.
+template <class Wanted>
+Pairs pairsOfFew(const std::vector<Box3>& boxes, const Wanted& wanted) {
+  Pairs found;
   for (Index i = 0; i < boxes.size(); ++i) {
     for (Index j = i + 1; j < boxes.size(); ++j) {
-      if (boxes[i].meets(boxes[j])) visit(i, j);
+      if (boxes[i].meets(boxes[j]) && wanted(i, j)) found.emplace_back(i, j);
     }
   }
+  return found;
 }
 
 }  // namespace
@@ -82,11 +84,7 @@ void forPairsOfFew(const std::vector<Box3>& boxes, const Visit& visit) {
 Pairs overlappingPairs(const std::vector<Box3>& boxes, const Progress* progress,
                        const PairFilter& wanted) {
   if (boxes.size() <= kFew) {
-    Pairs found;
-    forPairsOfFew(boxes, [&](Index i, Index j) {
-      if (!wanted || wanted(i, j)) found.emplace_back(i, j);
-    });
-    return found;
+    return pairsOfFew(boxes, [&](Index i, Index j) { return !wanted || wanted(i, j); });
   }
   const BoxTree tree(boxes);
   return pairsOf(tree.nodes().size(), progress, [&](Index node, Pairs& found) {
@@ -109,12 +107,9 @@ Pairs overlappingPairs(const std::vector<Box3>& boxes, const std::vector<Index>&
     is_some[i] = 1;
   }
   if (boxes.size() <= kFew) {
-    Pairs found;
-    forPairsOfFew(boxes, [&](Index i, Index j) {
-      if (is_some[i] == 0 && is_some[j] == 0) return;
-      if (!wanted || wanted(i, j)) found.emplace_back(i, j);
+    return pairsOfFew(boxes, [&](Index i, Index j) {
+      return (is_some[i] != 0 || is_some[j] != 0) && (!wanted || wanted(i, j));
     });
-    return found;
   }
   const BoxTree tree(some_boxes);
   return pairsOf(boxes.size(), progress, [&](Index i, Pairs& found) {

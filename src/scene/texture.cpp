@@ -42,7 +42,7 @@ class LinearSamples {
     float coded = std::numeric_limits<float>::quiet_NaN();  // equals no sample
     float linear = 0;
   };
-  std::vector<Kept> kept_ = std::vector<Kept>(65536);  // those of 16 bits have a place each
+  std::vector<Kept> kept_ = std::vector<Kept>(4096);  // samples of 8 bits have a place each
 };
 
 TextureResult textureFrom(const DecodedImage& image, const std::string& name) {

@@ -19,7 +19,7 @@ namespace {
 
 /// Half-planes at an edge whose angles differ by less (radians) may be in either order.
 constexpr double kSameAngle = 1e-5;
-constexpr std::size_t kRingsAtATime = 16384;  // in the order of their angles
+constexpr std::size_t kRingsAtATime = 16384;  // made on all threads
 
 /// A cell at an edge: its angle about the edge, from an arbitrary start, and its sides towards
 /// larger and smaller angles.
