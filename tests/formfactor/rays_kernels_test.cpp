@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -118,6 +119,28 @@ class RayKernelsTest : public testing::Test {
     return packet;
   }
 };
+
+TEST_F(RayKernelsTest, CoherentAndIncoherentPacketsEndOnTheSameTriangles) {
+  Rays rays(roof_.parts());
+  rayKernels().aim(roof_, kRays, rays.arrays());
+  std::size_t hits = 0;
+  for (std::size_t first = 0; first < kRays; first += kRayLanes) {
+    RTCRayHit16 together = packet(rayKernels(), rays, first, kRayLanes);
+    RTCRayHit16 alone = together;
+    for (int k = 0; k < kRayLanes; ++k) {
+      alone.ray.tfar[k] = std::numeric_limits<float>::infinity();
+      alone.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    }
+    embree_.trace(alone, kRayLanes, Coherence::incoherent);
+    for (int k = 0; k < kRayLanes; ++k) {
+      ASSERT_EQ(together.hit.geomID[k], alone.hit.geomID[k]);
+      if (together.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      EXPECT_EQ(together.hit.primID[k], alone.hit.primID[k]);
+      ++hits;
+    }
+  }
+  EXPECT_GT(hits, kRays / 4);
+}
 
 TEST_F(RayKernelsTest, EveryInstructionSetGivesTheSameBits) {
   struct Sample {

@@ -19,9 +19,9 @@ class ClusterFeatures {
   using Vector = Eigen::Matrix<double, kCount, 1>;
   using Square = Eigen::Matrix<double, kCount, kCount>;
 
-  /// All are kept by reference; `origins`: of this cluster.
-  ClusterFeatures(const PatchMesh& mesh, const RayCaster& caster, const RayOrigins& origins)
-      : mesh_(mesh), caster_(caster), size_(std::max(origins.size(), 1e-12)) {}
+  /// Mesh and caster are kept by reference; `size`: RayOrigins::size() of this cluster.
+  ClusterFeatures(const PatchMesh& mesh, const RayCaster& caster, double size)
+      : mesh_(mesh), caster_(caster), size_(std::max(size, 1e-12)) {}
 
   /// The features of a point in the coordinates of rays.
   Vector at(const glm::vec3& place, const glm::vec3& normal) const {

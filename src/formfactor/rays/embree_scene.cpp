@@ -63,12 +63,13 @@ EmbreeScene::EmbreeScene(const ViewScene& scene, const PatchMesh& mesh)
   tbb::task_arena(1).execute([&] { rtcCommitScene(scene_); });
 }
 
-void EmbreeScene::trace(RTCRayHit16& packet, int lanes) const {
+void EmbreeScene::trace(RTCRayHit16& packet, int lanes, Coherence coherence) const {
   alignas(64) std::array<int, kRayLanes> valid;
   for (int k = 0; k < kRayLanes; ++k) valid[std::size_t(k)] = k < lanes ? -1 : 0;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = coherence == Coherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                   : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcIntersect16(valid.data(), scene_, &context, &packet);
 }
 

@@ -43,6 +43,9 @@ inline void setRay(RTCRayHit16& packet, int k, const glm::vec3& from, const glm:
   packet.ray.dir_z[k] = along.z;
 }
 
+/// Whether rays of a packet meet much the same parts of the tree.
+enum class Coherence { coherent, incoherent };
+
 /// Edges are watertight: neighbouring polygons share their vertices, and Embree's robust mode lets
 /// no ray through between triangles that do.
 class EmbreeScene {
@@ -59,8 +62,8 @@ class EmbreeScene {
   /// less this, so that no digits are lost far from the origin.
   const Vec3& middle() const { return middle_; }
   glm::vec3 place(const Vec3& vertex) const { return {vertex - middle_}; }
-  /// Traces the first `lanes` rays of a packet, which leave in similar directions.
-  void trace(RTCRayHit16& packet, int lanes) const;
+  /// Traces the first `lanes` rays of a packet: together if they are coherent, else one by one.
+  void trace(RTCRayHit16& packet, int lanes, Coherence coherence = Coherence::coherent) const;
   /// The front that covers the back which lane k of a packet has hit. In a plate without thickness,
   /// two polygons back to back, the two tie in depth. Its geomID is RTC_INVALID_GEOMETRY_ID if
   /// there is none.

@@ -106,7 +106,7 @@ void PatchIrradiance::lookFrom(std::size_t cluster, const View& view) {
   const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
   const RayOrigins origins = caster_.origins(cluster);
   if (origins.empty()) return;
-  const ClusterFeatures features(mesh_, caster_, origins);
+  const ClusterFeatures features(mesh_, caster_, origins.size());
   Fit fit{int(bands_)};
   caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_, ends_[cluster],
                     [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t item) {
@@ -136,7 +136,7 @@ void PatchIrradiance::addSlopes(std::size_t cluster, std::vector<double>& irradi
   double area = 0;
   for (const Index i : patches) area += mesh_.area[i];
   if (!(area > 0)) return;
-  const ClusterFeatures features(mesh_, caster_, origins);
+  const ClusterFeatures features(mesh_, caster_, origins.size());
   const Features middle = features.middleOf(patches);
   for (std::size_t b = 0; b < bands_; ++b) {
     const Eigen::Map<const Features> slopes(&slopes_[slopesOf(cluster) + b * kFeatures]);

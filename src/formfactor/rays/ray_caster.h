@@ -76,9 +76,7 @@ class RayCaster {
 
   /// A place of the mesh in the coordinates of rays.
   glm::vec3 place(const Vec3& at) const { return embree_.place(at * scene_.scale); }
-  RayOrigins origins(std::size_t unknown) const {
-    return {mesh_, unknown, scene_.scale, embree_.middle()};
-  }
+  RayOrigins origins(std::size_t unknown) const;
   /// K: the number of items that are fronts.
   std::size_t fronts() const {
     return items_ == RayItems::unknowns ? mesh_.unknowns() : mesh_.size();
@@ -109,6 +107,7 @@ class RayCaster {
                    const Visit& visit) const;
 
   const PatchMesh& mesh_;
+  std::vector<Index> ordered_;  ///< as PatchClusters::patches, each cluster in originOrder()
   RayItems items_;
   ViewScene scene_;
   EmbreeScene embree_;

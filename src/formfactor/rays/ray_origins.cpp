@@ -23,15 +23,9 @@ RayFrame frameAround(const Vec3& normal, Vec3 across) {
 
 }  // namespace
 
-RayOrigins::RayOrigins(const PatchMesh& mesh, std::size_t unknown, double scale,
+RayOrigins::RayOrigins(const PatchMesh& mesh, std::span<const Index> patches, double scale,
                        const Vec3& middle) {
-  if (mesh.clusters) {
-    for (const Index patch : mesh.clusters->patchesOf(unknown)) {
-      addPatch(mesh, patch, scale, middle);
-    }
-  } else {
-    addPatch(mesh, unknown, scale, middle);
-  }
+  for (const Index patch : patches) addPatch(mesh, patch, scale, middle);
   if (parts_.empty()) return;
   const double sum = end_.back();
   size_ = std::sqrt(0.5 * sum);  // parts count twice their area
@@ -41,6 +35,11 @@ RayOrigins::RayOrigins(const PatchMesh& mesh, std::size_t unknown, double scale,
     first_.push_back(float(begin));
     stretch_.push_back(float(1 / std::max(end - begin, 1e-30)));
     begin = end;
+  }
+  std::uint32_t part = 0;
+  for (std::size_t step = 0; step < parts_.size(); ++step) {
+    while (part + 1 < parts_.size() && end_[part] <= double(step) / double(parts_.size())) ++part;
+    part_of_step_.push_back(part);
   }
 }
 
@@ -82,8 +81,8 @@ std::uint32_t RayOrigins::partAt(float x, float& within) const {
     within = x;
     return 0;
   }
-  const auto after = std::upper_bound(end_.begin(), end_.end() - 1, double(x));
-  const auto k = std::uint32_t(after - end_.begin());
+  std::uint32_t k = part_of_step_[std::size_t(double(x) * double(parts_.size()))];
+  while (k + 1 < parts_.size() && end_[k] <= double(x)) ++k;
   within = std::clamp((x - first_[k]) * stretch_[k], 0.0F, kBelowOne);
   return k;
 }

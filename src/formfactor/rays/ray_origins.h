@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "radiosity/patch_mesh.h"
@@ -21,7 +22,9 @@ struct RayFrame {
 /// are the mesh's times `scale` less `middle`, in single precision.
 class RayOrigins {
  public:
-  RayOrigins(const PatchMesh& mesh, std::size_t unknown, double scale, const Vec3& middle);
+  /// `patches`: of the unknown, in the order in which they take up x (originOrder()).
+  RayOrigins(const PatchMesh& mesh, std::span<const Index> patches, double scale,
+             const Vec3& middle);
 
   struct Part {
     glm::vec3 corner;
@@ -54,6 +57,8 @@ class RayOrigins {
   std::vector<double> end_;     ///< of each part's share of x; while adding, areas summed up
   std::vector<float> first_;    ///< where each part's share begins
   std::vector<float> stretch_;  ///< 1 / share
+  /// The part at the low end of each of equal steps of x, one a part.
+  std::vector<std::uint32_t> part_of_step_;
 };
 
 }  // namespace radiosity

@@ -267,7 +267,7 @@ class Rounds {
     const double n = rows_[k].rays;
     if (n == 0) return 0;
     const double growth = std::pow(squareOf(k) / (n * level), 1 / (1 + kUsualOrder));
-    constexpr double kMiddle = 0.75;  // rounding is up, by a half at most
+    constexpr double kMiddle = 0.9;  // rounding is up, by a quarter at most
     const std::uint32_t wanted =
         std::min(roundedRays(kMiddle * n * std::min(growth, kMostGrowth)), kMostRays);
     return wanted > rows_[k].rays ? wanted : 0;
@@ -346,8 +346,8 @@ class Rounds {
 std::uint32_t roundedRays(double rays) {
   double power = 1;
   while (2 * power <= rays) power *= 2;
-  if (power >= rays) return std::uint32_t(power);
-  return std::uint32_t(1.5 * power >= rays ? 1.5 * power : 2 * power);
+  constexpr double kStep = 0.25;
+  return std::uint32_t(std::ceil(rays / (kStep * power)) * kStep * power);
 }
 
 RayAim::RayAim(const FormFactorOptions& options)

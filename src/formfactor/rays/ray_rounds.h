@@ -18,7 +18,8 @@ inline constexpr std::uint32_t kPilotRays = 512;
 /// Most rays of a row in each replicate: points then lie as close as 24 bits can tell apart.
 inline constexpr std::uint32_t kMostRays = 1u << 24;
 
-/// The least number of rays a replicate that is 2^k or 3 2^k and at least `rays`.
+/// The least number of rays a replicate that is 4 to 7 times a power of 2 and at least `rays`,
+/// which are 4 or more.
 std::uint32_t roundedRays(double rays);
 
 /// The aim of casting rows.

@@ -1,5 +1,7 @@
 #include "formfactor/rays/seen_patches.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -27,6 +29,7 @@ struct Item {
 
 /// The view of one cluster.
 struct Row {
+  double size = 0;  ///< RayOrigins::size()
   std::uint32_t rays = 0;
   std::vector<Item> items;
   Vector sum = Vector::Zero();
@@ -51,7 +54,10 @@ struct Row {
 class Looks {
  public:
   explicit Looks(const PatchMesh& mesh)
-      : mesh_(mesh), caster_(mesh, RayItems::patches), rows_(mesh.unknowns()) {}
+      : mesh_(mesh),
+        caster_(mesh, RayItems::patches),
+        rows_(mesh.unknowns()),
+        places_(std::vector<std::uint32_t>(mesh.size() + 1, kNone)) {}
 
   void run(Progress& progress) {
     const std::uint32_t rays = ClusterFeatures::rays(rows_.size());
@@ -79,8 +85,9 @@ class Looks {
     const RayOrigins origins = caster_.origins(cluster);
     if (origins.empty()) return;
     Row& row = rows_[cluster];
-    const ClusterFeatures features(mesh_, caster_, origins);
-    std::vector<std::uint32_t> place(mesh_.size() + 1, kNone);
+    row.size = origins.size();
+    const ClusterFeatures features(mesh_, caster_, row.size);
+    std::vector<std::uint32_t>& place = places_.local();
     const std::uint32_t sky = std::uint32_t(caster_.items());
     caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays,
                       [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t end) {
@@ -97,6 +104,7 @@ class Looks {
                         ++row.items[place[item]].hits;
                         row.items[place[item]].sum += f;
                       });
+    for (const Item& item : row.items) place[item.item] = kNone;
     std::ranges::sort(row.items, {}, &Item::item);
     if (patches.size() < 2 || row.rays <= ClusterFeatures::kCount + 1) return;
     row.middle = features.middleOf(patches);
@@ -118,8 +126,7 @@ class Looks {
     const std::size_t cluster = mesh_.unknownOf(i);
     const Row& row = rows_[cluster];
     if (row.axes.rows() == 0) return;
-    const RayOrigins origins = caster_.origins(cluster);
-    const ClusterFeatures features(mesh_, caster_, origins);
+    const ClusterFeatures features(mesh_, caster_, row.size);
     appendValues(row.axes * (features.ofPatch(i) - row.middle), seen.patch);
   }
 
@@ -130,6 +137,9 @@ class Looks {
   const PatchMesh& mesh_;
   RayCaster caster_;
   std::vector<Row> rows_;
+  /// Of each thread: where an item, or the sky after all patches, is in its row's items; else
+  /// kNone.
+  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> places_;
 };
 
 }  // namespace
