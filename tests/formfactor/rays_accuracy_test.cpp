@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "formfactor/rays/ray_rows.h"
 #include "formfactor/rays/row_accuracy.h"
 
 namespace radiosity {
@@ -95,12 +96,41 @@ TEST(RaysAccuracy, ARowWithoutHitsHasAnErrorFigure) {
 
 TEST(RaysAccuracy, ForeseenVarianceFollowsHitsAndTheGainOfNets) {
   // Few hits of a small share: those of independent rays.
-  EXPECT_NEAR(foreseenVariance(1e-3, 1), 1e-6 * (1 - 1e-3), 1e-12);
+  const auto ofOneEnd = [](double factor, double hits) {
+    return foreseenVariance(factor, hits, hitsVariance(factor, hits));
+  };
+  EXPECT_NEAR(ofOneEnd(1e-3, 1), 1e-6 * (1 - 1e-3), 1e-12);
   // Many: less by the fourth root of the hits. Nearly all: by the misses.
-  EXPECT_NEAR(foreseenVariance(0.5, 20000), 0.25 * 10000 / (20000.0 * 20000.0) / 10, 1e-12);
-  EXPECT_LT(foreseenVariance(0.99, 10000), foreseenVariance(0.5, 10000));
-  EXPECT_EQ(foreseenVariance(1, 1000), 0);
-  EXPECT_EQ(foreseenVariance(0, 0), 0);
+  EXPECT_NEAR(ofOneEnd(0.5, 20000), 0.25 * 10000 / (20000.0 * 20000.0) / 10, 1e-12);
+  EXPECT_LT(ofOneEnd(0.99, 10000), ofOneEnd(0.5, 10000));
+  EXPECT_EQ(ofOneEnd(1, 1000), 0);
+  EXPECT_EQ(ofOneEnd(0, 0), 0);
+}
+
+/// A small patch that sees a wall alone knows so by all of its rays; the few of the wall's that end
+/// on it are a part of the merged entry, and as uncertain as ever.
+TEST(RaysAccuracy, AnEntryThatIsAllOfARowIsUncertainByItsOtherEnd) {
+  std::vector<RayRow> rows(2);
+  rows[0].rays = 500;
+  rows[0].columns = {1};
+  rows[0].hits = {{500, 500}};
+  rows[1].rays = 5000;
+  rows[1].columns = {0};
+  rows[1].hits = {{55, 45}};
+  const std::vector<double> area{0.01, 1};
+  std::vector<double> variance(2, -1.0);
+  std::vector<double> factor(2, -1.0);
+  forMergedRows(rows, area, KnownEntries(), {}, nullptr, [&](const MergedRow& merged) {
+    ASSERT_EQ(merged.variances.size(), 1u);
+    variance[merged.position] = merged.variances[0];
+    factor[merged.position] = 0.5 * (merged.factors[0][0] + merged.factors[0][1]);
+  });
+  EXPECT_NEAR(factor[0], 1, 1e-12);
+  EXPECT_NEAR(factor[1], 0.01, 1e-12);
+  const double of_hits = hitsVariance(0.01, 100);
+  EXPECT_NEAR(variance[0], foreseenVariance(1, 1100, of_hits), 1e-15);
+  // Relative errors of a pair are the same from both ends.
+  EXPECT_NEAR(variance[1], 1e-4 * variance[0], 1e-15);
 }
 
 }  // namespace

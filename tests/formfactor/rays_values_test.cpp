@@ -177,6 +177,26 @@ TEST(Rays, TellSkyAndBacksFromFronts) {
   EXPECT_EQ(f.sky[4], 1);
 }
 
+/// The gap is wider than rays start before their plane: from outside there are backs alone, as from
+/// inside there are fronts alone.
+TEST(Rays, PlatesCloseToEachOtherAreSeenAlikeFromBothEnds) {
+  constexpr double kGap = 1e-6;
+  test::MeshBuilder builder;
+  builder.box("room", {0, 0, 0}, {1, 1, 1}, 1, true);
+  builder.grid("low", {0.25, 0.25, 0.5}, {0.5, 0, 0}, {0, 0.5, 0});
+  builder.grid("high", {0.25, 0.25, 0.5 + kGap}, {0, 0.5, 0}, {0.5, 0, 0});
+  const PatchMesh mesh = builder.build();
+  FormFactorOptions options = byRays(1e-2);
+  options.closure = ClosureMode::off;
+  const FormFactors f = test::computed(mesh, options);
+  EXPECT_NEAR(f.matrix.at(6, 7), 1, 1e-4);
+  for (std::size_t wall = 0; wall < 6; ++wall) {
+    EXPECT_EQ(f.matrix.at(wall, 6), 0);
+    EXPECT_EQ(f.matrix.at(wall, 7), 0);
+    EXPECT_GT(f.backs[wall], 0.01);
+  }
+}
+
 TEST(Rays, GoOnUntilATighterToleranceIsMet) {
   const PatchMesh mesh = test::roomWithBlock(3).build();
   const FormFactors truth = test::computed(mesh, test::exactly(1e-5));

@@ -5,6 +5,8 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 
 #include "base/geometry/box.h"
 #include "radiosity/base.h"
@@ -12,9 +14,11 @@
 namespace radiosity {
 namespace {
 
-/// Single precision cannot tell which of two hits comes first if they are no farther apart than
-/// this, in scenes of size 1.
-constexpr float kTie = 2e-6F;
+/// Two planes no farther apart than rays start before theirs are one to rays that leave, so they
+/// are one to rays that arrive, or a pair would see each other from one end alone.
+constexpr float kTie = kRayLift;
+/// Of a ray between the planes, at most: where it runs along them.
+constexpr float kLongestTie = 2e-5F;
 
 /// An intersection filter for a single ray.
 void refuseBacks(const RTCFilterFunctionNArguments* hit) {
@@ -81,8 +85,12 @@ RTCHit EmbreeScene::frontAt(const RTCRayHit16& packet, int k) const {
   ray.ray.dir_x = packet.ray.dir_x[k];
   ray.ray.dir_y = packet.ray.dir_y[k];
   ray.ray.dir_z = packet.ray.dir_z[k];
-  ray.ray.tnear = std::max(0.0F, packet.ray.tfar[k] - kTie);
-  ray.ray.tfar = packet.ray.tfar[k] + kTie;
+  const glm::vec3 normal(packet.hit.Ng_x[k], packet.hit.Ng_y[k], packet.hit.Ng_z[k]);
+  const glm::vec3 along(ray.ray.dir_x, ray.ray.dir_y, ray.ray.dir_z);
+  const float across = std::abs(glm::dot(normal, along)) / glm::length(normal);
+  const float tie = across * kLongestTie > kTie ? kTie / across : kLongestTie;
+  ray.ray.tnear = std::max(0.0F, packet.ray.tfar[k] - tie);
+  ray.ray.tfar = packet.ray.tfar[k] + tie;
   ray.ray.mask = 0xffffffffu;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;

@@ -219,15 +219,20 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
         addKnownBefore(j);
         merging.columns.push_back(j);
         std::array<double, kReplicates>& factor = merging.factors.emplace_back();
-        double all_hits = 0;
+        std::array<double, 2> hits_of{};  // its own; those of j
         for (std::size_t r = 0; r < kReplicates; ++r) {
           const double hits = double(own[r]) + double(of_j[r]);
           if (hits == 0) continue;
           const double from_j = j == k ? 0.0 : density[j][r];
           factor[r] = hits / ((density[k][r] + from_j) * area[k]);
-          all_hits += hits;
+          hits_of[0] += double(own[r]);
+          hits_of[1] += double(of_j[r]);
         }
-        merging.variances.push_back(foreseenVariance(0.5 * (factor[0] + factor[1]), all_hits));
+        const double mean = 0.5 * (factor[0] + factor[1]);
+        // A row that sees little but j knows this well by its own rays; j's may be few.
+        const double of_hits =
+            hitsVariance(mean, hits_of[0]) + hitsVariance(mean * area[k] / area[j], hits_of[1]);
+        merging.variances.push_back(foreseenVariance(mean, hits_of[0] + hits_of[1], of_hits));
       };
       touchRows(scratch, rows[k].bytes());
       forBothEnds(rows[k], handed.columns(k), handed.hits(k), n, merge);
@@ -245,7 +250,8 @@ void addAlone(const RayRow& row, std::size_t e, ReplicateSums& sums) {
   const double first = row.hits[e][0] / row.counted(0);
   const double second = row.hits[e][1] / row.counted(1);
   const double hits = double(row.hits[e][0]) + double(row.hits[e][1]);
-  sums.add(first, second, foreseenVariance(0.5 * (first + second), hits));
+  const double mean = 0.5 * (first + second);
+  sums.add(first, second, foreseenVariance(mean, hits, hitsVariance(mean, hits)));
 }
 
 /// Adds the black backs that a row sees, whose columns come from `unknowns` on.

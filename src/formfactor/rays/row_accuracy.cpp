@@ -39,10 +39,11 @@ RowAccuracy ReplicateSums::accuracy() const {
   return result;
 }
 
-double foreseenVariance(double factor, double hits) {
+double hitsVariance(double share, double hits) { return hits * std::max(0.0, 1 - share); }
+
+double foreseenVariance(double factor, double hits, double of_hits) {
   if (!(hits > 0)) return 0;
-  const double independent = hits * std::max(0.0, 1 - factor);  // variance of the hits
-  const double of_net = independent * std::pow(std::max(1.0, independent), -kGain);
+  const double of_net = of_hits * std::pow(std::max(1.0, of_hits), -kGain);
   return factor * factor * of_net / (hits * hits);
 }
 

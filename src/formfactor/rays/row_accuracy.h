@@ -45,10 +45,14 @@ class ReplicateSums {
   double foreseen_squares_ = 0;
 };
 
-/// The variance of a mean form factor known from `hits` hits by rays of scrambled nets: that of
-/// independent rays, hits * (1 - factor), less the gain of nets. They leave to chance the cells of
-/// the net that a target's border runs through: of n points in four dimensions about n^(3/4).
-double foreseenVariance(double factor, double hits);
+/// The variance of a number of hits by independent rays, of which `share` hit.
+double hitsVariance(double share, double hits);
+
+/// The variance of a mean form factor known from `hits` hits by rays of scrambled nets:
+/// `of_hits`, that of independent rays (hitsVariance()), less the gain of nets. They leave to
+/// chance the cells of the net that a target's border runs through: of n points in four dimensions
+/// about n^(3/4).
+double foreseenVariance(double factor, double hits, double of_hits);
 
 /// The error that rows have in common. A row's own two replicates say little of its error if few
 /// entries make it: they may agree by chance. So the error is a mean of the row's own estimate and
