@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "formfactor/computed_factors.h"
@@ -175,6 +176,47 @@ TEST(Rays, TellSkyAndBacksFromFronts) {
   // that their backs alone are adapted: to 1e-2 of each.
   EXPECT_NEAR(backs, 0.199824895698, 2e-3);
   EXPECT_EQ(f.sky[4], 1);
+}
+
+/// A ceiling low over tiles: four face it, and all others turn their backs to it. Its row has a
+/// small norm and takes few rays, so that it knows its backs badly; the tiles' rows know well what
+/// it sees of them, and so of backs.
+TEST(Rays, ClosureBringsBacksNearerToTheirTrueShare) {
+  test::MeshBuilder builder;
+  builder.box("room", {-4, -4, -4}, {4, 4, 4}, 2, true);
+  builder.grid("ceiling", {-1, -1, 0.012}, {0, 2, 0}, {2, 0, 0});
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 8; ++y) {
+      const Vec3 at(0.25 * x - 1, 0.25 * y - 1, 0);
+      const Vec3 u(0.25, 0, 0);
+      const Vec3 v(0, 0.25, 0);
+      const bool up = x % 4 == 1 && y % 4 == 1;
+      builder.grid(up ? "tiles" : "panels", at, up ? u : v, up ? v : u);
+    }
+  }
+  const PatchMesh mesh = builder.build();
+  const std::size_t ceiling = 24;
+  ASSERT_EQ(mesh.surface_names[mesh.surface[ceiling]], "ceiling");
+  const double truth = test::computed(mesh, test::exactly(1e-4)).backs[ceiling];
+  const auto squaredError = [&](ClosureMode mode, std::uint64_t seed) {
+    FormFactorOptions options = byRays(1e-2);
+    options.seed = seed;
+    options.closure = mode;
+    const FormFactors f = test::computed(mesh, options);
+    double backs = 0;
+    for (std::size_t i = 0; i < mesh.size(); ++i) backs += mesh.area[i] * f.backs[i];
+    backs /= std::reduce(mesh.area.begin(), mesh.area.end());
+    const std::vector<double>& by_surface = f.backs_by_surface;
+    EXPECT_NEAR(std::reduce(by_surface.begin(), by_surface.end()), backs, 1e-9);
+    return std::pow(f.backs[ceiling] - truth, 2);
+  };
+  double closed = 0;
+  double own = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    closed += squaredError(ClosureMode::enforce, seed);
+    own += squaredError(ClosureMode::off, seed);
+  }
+  EXPECT_LT(closed, 0.5 * own);
 }
 
 /// The gap is wider than rays start before their plane: from outside there are backs alone, as from

@@ -4,6 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -22,18 +23,38 @@ namespace {
 /// The tolerance to which single precision can restore rows.
 constexpr double kClosureTolerance = 1e-9;
 
-/// The error of the sky's share of a row: the spread of its rays, and at least one ray, since a row
-/// that saw no sky may have missed it.
-double skyError(double sky, double each) {
-  const double share = std::clamp(sky, 0.0, 1.0);
+/// What rows see beside the matrix, and the errors of its shares: K values each.
+struct Beside {
+  explicit Beside(std::size_t n) : sky_error(n, 0.0), backs_error(n, 0.0), seen_backs(n) {}
+
+  std::vector<double> sky_error;
+  std::vector<double> backs_error;
+  std::vector<std::vector<SeenBack>> seen_backs;
+};
+
+/// The error of a share of a row: the spread of its rays, and at least one ray.
+double shareError(double of_row, double each) {
+  const double share = std::clamp(of_row, 0.0, 1.0);
   return std::sqrt(share * (1 - share) * each + each * each);
 }
 
+/// The error of a form factor merged from both ends, with rays a square metre and area of its own
+/// and of the other one: that of independent rays, which is above the true one, but good as a
+/// weight. At least one ray, as shareError().
+double mergedError(double factor, const std::array<double, 2>& density,
+                   const std::array<double, 2>& area) {
+  const double each = 1 / ((density[0] + density[1]) * area[0]);
+  const double hits = factor / each;
+  const double own = hits * density[0] / (density[0] + density[1]);
+  const double variance =
+      hitsVariance(factor, own) + hitsVariance(factor * area[0] / area[1], hits - own);
+  return std::min(1.0, each * std::sqrt(std::max(1.0, variance)));
+}
+
 /// Fronts, backs and sky of each row, by its own rays alone. Known entries replace the rays that
-/// ended there; all other rays share the rest of the row. `sky_error`: of the sky's share.
+/// ended there; all other rays share the rest of the row.
 void setAccounts(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
-                 ScratchMemory* scratch, FormFactors& result, std::vector<double>& sky_error,
-                 std::vector<std::vector<SeenBack>>& seen_backs) {
+                 ScratchMemory* scratch, FormFactors& result, Beside& beside) {
   const std::size_t n = rows.size();
   parallelFor(n, 64, [&](std::size_t k) {
     const RayRow& row = rows[k];
@@ -45,9 +66,9 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
       result.fronts[i] = account.fronts;
       result.backs[i] = account.backs;
       result.sky[i] = account.sky;
-      seen_backs[i] = known.rowAt(k)->backs;
+      beside.seen_backs[i] = known.rowAt(k)->backs;
       for (const KnownEntries::Entry& entry : known.at(k)) {
-        sky_error[i] += entry.error / scene.area()[k];
+        beside.sky_error[i] += entry.error / scene.area()[k];
       }
       return;
     }
@@ -63,14 +84,16 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
       const double share = (double(row.hits[e][0]) + double(row.hits[e][1])) * each;
       if (row.columns[e] >= n) {
         result.backs[i] += share;
-        seen_backs[i].push_back({Index(row.columns[e] - n), share});
+        beside.seen_backs[i].push_back({Index(row.columns[e] - n), share});
       } else if (known.rowAt(row.columns[e]) == nullptr) {
         fronts += share;
       }
     }
     result.fronts[i] = fronts;
     result.sky[i] = (double(row.sky[0]) + double(row.sky[1])) * each;
-    sky_error[i] = skyError(result.sky[i], each);
+    // A row that saw no sky may have missed it; most scenes have no backs to be missed.
+    beside.sky_error[i] = shareError(result.sky[i], each);
+    if (result.backs[i] > 0) beside.backs_error[i] = shareError(result.backs[i], each);
   });
 }
 
@@ -111,9 +134,8 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
         upper.errors.push_back(std::min(1.0, next_known->error / scene.area()[k]));
         continue;
       }
-      // The variance of independent rays: above the true one, but good as a weight.
-      const double variance = value / ((density[k] + density[j]) * scene.area()[k]);
-      upper.errors.push_back(std::min(1.0, std::sqrt(variance)));
+      upper.errors.push_back(
+          mergedError(value, {density[k], density[j]}, {scene.area()[k], scene.area()[j]}));
     }
     result.matrix.setUpperRow(k, upper.positions, upper.factors);
     const std::size_t itself = !upper.positions.empty() && upper.positions[0] == k ? 1 : 0;
@@ -139,20 +161,45 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
   result.report.error_figure = norms > 0 ? std::sqrt(squares / norms) : 0.0;
 }
 
+/// Adds to a row's backs their part of what all beside the matrix has `gained`, by the squares of
+/// the errors of backs and sky.
+void moveBacks(std::size_t i, double gained, Beside& beside, FormFactors& result) {
+  double& backs = result.backs[i];
+  if (!(beside.backs_error[i] > 0)) return;
+  const bool closed = result.report.closed;
+  const double ratio = closed ? 0.0 : beside.sky_error[i] / beside.backs_error[i];
+  const double all = backs + (closed ? 0.0 : result.sky[i]) + gained;
+  const double moved = std::clamp(backs + gained / (1 + ratio * ratio), 0.0, std::max(all, 0.0));
+  for (SeenBack& seen : beside.seen_backs[i]) seen.share *= moved / backs;
+  backs = moved;
+}
+
 /// By its own rays, fronts, backs and sky of a row sum to 1; merging has moved the fronts. The
-/// difference goes to fronts and, in an open scene, to the sky, each by its error.
-void close(const UncertainEntries& uncertain, const std::vector<double>& sky_error,
-           ClosureMode mode, FormFactors& result, Progress& progress) {
-  if (mode != ClosureMode::off) {
-    SharesBeside sky;
-    if (!result.report.closed) sky = {result.sky, sky_error};
-    result.report.closure =
-        closeRows(result.matrix, uncertain, result.fronts, progress, kClosureTolerance, sky);
-    result.report.closure_enforced = true;
-    // Keep the sums aimed at: storing rounds those of the matrix.
-    if (result.report.closed && result.report.closure.reached) return;
+/// difference goes to fronts, backs and, in an open scene, the sky, each by its error.
+void close(const UncertainEntries& uncertain, ClosureMode mode, Beside& beside, FormFactors& result,
+           Progress& progress) {
+  if (mode == ClosureMode::off) {
+    result.fronts = result.matrix.rowSums();
+    return;
   }
-  result.fronts = result.matrix.rowSums();
+  FormFactorReport& report = result.report;
+  const std::size_t n = result.fronts.size();
+  std::vector<double> share = result.backs;
+  std::vector<double> error = beside.backs_error;
+  for (std::size_t i = 0; i < n && !report.closed; ++i) {
+    share[i] += result.sky[i];
+    error[i] = std::hypot(error[i], beside.sky_error[i]);
+  }
+  report.closure = closeRows(result.matrix, uncertain, result.fronts, progress, kClosureTolerance,
+                             {share, error});
+  report.closure_enforced = true;
+  const std::vector<double> sums = result.matrix.rowSums();
+  for (std::size_t i = 0; i < n; ++i) {
+    // Keep a sum aimed at, if nothing else has moved: storing rounds those of the matrix.
+    if (report.closed && report.closure.reached && !(beside.backs_error[i] > 0)) continue;
+    moveBacks(i, result.fronts[i] - sums[i], beside, result);
+    result.fronts[i] = sums[i];
+  }
 }
 
 /// Sets the sky to the rest of each row, and to 0 in a closed scene.
@@ -222,19 +269,18 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
   result.error.assign(n, 0.0);
-  std::vector<double> sky_error(n, 0.0);
-  std::vector<std::vector<SeenBack>> seen_backs(n);
+  Beside beside(n);
   UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
-  setAccounts(scene, known, rows, scratch.get(), result, sky_error, seen_backs);
+  setAccounts(scene, known, rows, scratch.get(), result, beside);
   store(scene, known, rows, options.skyWeight(), scratch.get(), result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();
   report.rays.seconds_merge += closing - storing;
-  close(uncertain, sky_error, options.closure, result, progress);
+  close(uncertain, options.closure, beside, result, progress);
   balance(result);
-  accountForBacks(mesh, scene.order(), result.matrix.area(), seen_backs, result);
+  accountForBacks(mesh, scene.order(), result.matrix.area(), beside.seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
   if (processes != nullptr) share(*processes, progress, result.matrix);
   return result;
