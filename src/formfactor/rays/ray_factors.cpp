@@ -46,8 +46,7 @@ double mergedError(double factor, const std::array<double, 2>& density,
   const double each = 1 / ((density[0] + density[1]) * area[0]);
   const double hits = factor / each;
   const double own = hits * density[0] / (density[0] + density[1]);
-  const double variance =
-      hitsVariance(factor, own) + hitsVariance(factor * area[0] / area[1], hits - own);
+  const double variance = pairHitsVariance(factor, {own, hits - own}, area);
   return std::min(1.0, each * std::sqrt(std::max(1.0, variance)));
 }
 
@@ -95,6 +94,7 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
     beside.sky_error[i] = shareError(result.sky[i], each);
     if (result.backs[i] > 0) beside.backs_error[i] = shareError(result.backs[i], each);
   });
+  if (result.report.closed) beside.sky_error.assign(n, 0.0);  // there is none to be missed
 }
 
 /// Stores the matrix, its error figures and the error of each entry. `sky_weight`: see
@@ -166,9 +166,8 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
 void moveBacks(std::size_t i, double gained, Beside& beside, FormFactors& result) {
   double& backs = result.backs[i];
   if (!(beside.backs_error[i] > 0)) return;
-  const bool closed = result.report.closed;
-  const double ratio = closed ? 0.0 : beside.sky_error[i] / beside.backs_error[i];
-  const double all = backs + (closed ? 0.0 : result.sky[i]) + gained;
+  const double ratio = beside.sky_error[i] / beside.backs_error[i];
+  const double all = backs + result.sky[i] + gained;
   const double moved = std::clamp(backs + gained / (1 + ratio * ratio), 0.0, std::max(all, 0.0));
   for (SeenBack& seen : beside.seen_backs[i]) seen.share *= moved / backs;
   backs = moved;
@@ -186,7 +185,7 @@ void close(const UncertainEntries& uncertain, ClosureMode mode, Beside& beside, 
   const std::size_t n = result.fronts.size();
   std::vector<double> share = result.backs;
   std::vector<double> error = beside.backs_error;
-  for (std::size_t i = 0; i < n && !report.closed; ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     share[i] += result.sky[i];
     error[i] = std::hypot(error[i], beside.sky_error[i]);
   }

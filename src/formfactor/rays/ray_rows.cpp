@@ -230,8 +230,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
         }
         const double mean = 0.5 * (factor[0] + factor[1]);
         // A row that sees little but j knows this well by its own rays; j's may be few.
-        const double of_hits =
-            hitsVariance(mean, hits_of[0]) + hitsVariance(mean * area[k] / area[j], hits_of[1]);
+        const double of_hits = pairHitsVariance(mean, hits_of, {area[k], area[j]});
         merging.variances.push_back(foreseenVariance(mean, hits_of[0] + hits_of[1], of_hits));
       };
       touchRows(scratch, rows[k].bytes());

@@ -41,6 +41,11 @@ RowAccuracy ReplicateSums::accuracy() const {
 
 double hitsVariance(double share, double hits) { return hits * std::max(0.0, 1 - share); }
 
+double pairHitsVariance(double factor, const std::array<double, 2>& hits,
+                        const std::array<double, 2>& area) {
+  return hitsVariance(factor, hits[0]) + hitsVariance(factor * area[0] / area[1], hits[1]);
+}
+
 double foreseenVariance(double factor, double hits, double of_hits) {
   if (!(hits > 0)) return 0;
   const double of_net = of_hits * std::pow(std::max(1.0, of_hits), -kGain);

@@ -1,6 +1,7 @@
 // The error of a row counted by rays: from the difference of its replicates, and from other rows.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace radiosity {
@@ -47,6 +48,11 @@ class ReplicateSums {
 
 /// The variance of a number of hits by independent rays, of which `share` hit.
 double hitsVariance(double share, double hits);
+
+/// The same of a pair's hits from both ends: `hits` of its own and of the other one, `area`
+/// likewise, `factor` from its own to the other one.
+double pairHitsVariance(double factor, const std::array<double, 2>& hits,
+                        const std::array<double, 2>& area);
 
 /// The variance of a mean form factor known from `hits` hits by rays of scrambled nets:
 /// `of_hits`, that of independent rays (hitsVariance()), less the gain of nets. They leave to
