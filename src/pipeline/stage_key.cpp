@@ -288,7 +288,8 @@ std::string listText(const std::vector<double>& values) {
 }
 
 void readList(const StageKey& key, std::string_view name, std::vector<double>& values) {
-  for (const std::string_view word : splitAt(key.get(name).value_or("none"), ',')) {
+  const std::string text = key.get(name).value_or("none");
+  for (const std::string_view word : splitAt(text, ',')) {
     if (const std::optional<double> value = parseNumber(word)) values.push_back(*value);
   }
 }

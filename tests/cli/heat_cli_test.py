@@ -235,6 +235,15 @@ class Heat(CliTest):
             for a, b in zip(grey["surfaces"], banded["surfaces"]):
                 self.assertAlmostEqual(a["temperature_K"], b["temperature_K"], delta=2e-3)
 
+    def test_a_results_file_keeps_its_bands(self):
+        for option, bands in (("--band-edges", "1.5,3.25,7.125,11.0625,20.5,33.25"),
+                              ("--band-fractions", ".0625,.09375,.125,.21875,.125,.1875,.1875")):
+            first = self.heat("box.obj", *SMALL, "--thermal", "walls.csv", option, bands, "-o", "x.h5")
+            self.assertEqual(first["bands"], 7)
+            again = self.report("heat", "x.h5", "-o", "x.csv")
+            self.assertEqual(again["stages"]["heat"]["action"], "reused")
+            self.assertEqual(again["heat"]["bands"], 7)
+
     def test_threads_change_no_bit(self):
         for threads in ("1", "2"):
             self.run_program("heat", "box.obj", "--patches", "2000", "--method", "hemicube",
