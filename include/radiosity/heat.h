@@ -145,7 +145,8 @@ struct HeatConditions {
 };
 
 /// Reads the table at `csv_path` (empty: none), the settings and groups. Errors: as
-/// readWholeFile(), and InputError if there are neither a table nor settings.
+/// readWholeFile(), and InputError if there are neither a table nor settings, or if one cannot be
+/// read as such.
 ConditionText readConditionText(const std::string& csv_path, std::span<const std::string> settings,
                                 std::span<const std::string> groups = {});
 

@@ -190,6 +190,16 @@ void checkCommandWord(int argc, char** argv) {
       fmt::format("'{}' is not a subcommand: {}{}", word, list, suggestion(word, names)));
 }
 
+/// Prints the help of "help" and "help COMMAND", as --help does, and returns the exit code.
+std::optional<int> help(int argc, char** argv, Request& request) {
+  std::vector<char*> words(argv, argv + argc);
+  words.erase(words.begin() + 1);
+  words.resize(std::min<std::size_t>(words.size(), 2));
+  std::string option = "--help";
+  words.push_back(option.data());
+  return parseCommandLine(int(words.size()), words.data(), request);
+}
+
 /// The message, in one line, for an error of CLI11.
 std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
   const std::string command = "radiosity " + sub.get_name();
@@ -230,6 +240,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
 }  // namespace
 
 std::optional<int> parseCommandLine(int argc, char** argv, Request& request) {
+  if (argc > 1 && argv[1] == std::string("help")) return help(argc, argv, request);
   checkCommandWord(argc, argv);
   CLI::App app(
       "radiosity: light a scene by the matrix method. Scene -> patches -> form factors\n"
@@ -240,7 +251,7 @@ std::optional<int> parseCommandLine(int argc, char** argv, Request& request) {
   app.formatter(std::make_shared<HelpFormatter>());
   app.footer(
       "Exit codes: 0 done; 1 the run failed or did not converge; 2 bad input or arguments.\n"
-      "Help on one: radiosity render --help\n\n"
+      "Help on one: radiosity help render\n\n"
       "Example:\n"
       "  radiosity render data/cornell-box.obj -o cornell.png");
   std::array<CLI::App*, kCommands.size()> subs{};
@@ -261,6 +272,7 @@ std::optional<int> parseCommandLine(int argc, char** argv, Request& request) {
     throw InputError(explain(error, *subs[chosen]));
   }
   request.command = kCommands[chosen];
+  request.validate();
   return std::nullopt;
 }
 

@@ -19,14 +19,21 @@ void writeTables(Pipeline& pipeline, OutputSet& files) {
               [&](const std::string& temporary) { writeHeatPatches(temporary, heat, mesh); });
 }
 
+bool givesConditions(const Request& request) {
+  return !request.thermal.empty() || !request.conditions.empty();
+}
+
+ConditionText givenConditions(const Request& request) {
+  return readConditionText(request.thermal, request.conditions, request.groups);
+}
+
 /// The given conditions, or else those of the heat in the results file.
 HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   const Request& request = session.request;
   const std::optional<HeatSolution>& stored = pipeline.stored().heat;
-  const bool given = !request.thermal.empty() || !request.conditions.empty();
-  if (given || !pipeline.fromResultsFile() || !stored || stored->conditions.empty()) {
-    return readHeatConditions(
-        pipeline.scene(), readConditionText(request.thermal, request.conditions, request.groups));
+  const bool kept = pipeline.fromResultsFile() && stored && !stored->conditions.empty();
+  if (givesConditions(request) || !kept) {
+    return readHeatConditions(pipeline.scene(), givenConditions(request));
   }
   session.report.line("conditions", "those in " + request.input);
   ConditionText text = stored->conditions;
@@ -58,6 +65,7 @@ void noteLightOptions(Session& session, bool materials_are_used) {
 int runHeat(Session& session) {
   OutputSet files = claimOutputs(session);
   if (takesMatrixFile(session.request)) return heatMatrixFile(session, files);
+  if (givesConditions(session.request)) givenConditions(session.request);  // errors, before a scene
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   // We check the conditions first, so that errors are found before form factors are computed.

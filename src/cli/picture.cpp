@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "base/parse.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
 #include "radiosity/version.h"
@@ -40,23 +39,9 @@ Camera namedCamera(const Request& request, const Scene& scene, std::string& from
 
 int otherSide(double pixels) { return std::max(1, int(std::lround(pixels))); }
 
-std::optional<double> exposureNumber(const Request& request) {
-  if (request.exposure == "auto") return std::nullopt;
-  const std::optional<double> ev = parseNumber(request.exposure);
-  constexpr double kLargest = 100;  // 2^100 is beyond any lamp
-  if (!ev || std::abs(*ev) > kLargest) {
-    throw InputError(
-        fmt::format("--exposure: '{}' is neither auto nor a number of stops from -100 "
-                    "to 100, e.g. --exposure 2.5",
-                    request.exposure));
-  }
-  return ev;
-}
-
 }  // namespace
 
 Picture choosePicture(const Request& request, const Scene& scene) {
-  exposureNumber(request);
   Picture picture;
   picture.options = request.renderOptions();
   picture.up = scene.up;
@@ -198,7 +183,7 @@ ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const Surface
 }
 
 double exposureOf(const Request& request, const Image& radiance) {
-  const std::optional<double> ev = exposureNumber(request);
+  const std::optional<double> ev = request.exposureStops();
   return ev ? *ev : autoExposure(radiance);
 }
 

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "base/parse.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
@@ -173,6 +177,51 @@ RenderOptions Request::renderOptions() const {
   options.smooth = !flat;
   options.show_backs = backs == "show";
   return options;
+}
+
+std::optional<double> Request::exposureStops() const {
+  if (exposure == "auto") return std::nullopt;
+  const std::optional<double> ev = parseNumber(exposure);
+  constexpr double kLargest = 100;  // 2^100 is beyond any lamp
+  if (!ev || std::abs(*ev) > kLargest) {
+    throw InputError(
+        fmt::format("--exposure: '{}' is neither auto nor a number of stops from -100 "
+                    "to 100, e.g. --exposure 2.5",
+                    exposure));
+  }
+  return ev;
+}
+
+namespace {
+
+/// Checks a camera in numbers; other words are names of the scene's cameras. Which axis points up
+/// is not known yet, so a camera is wrong if it is for both.
+void checkCamera(const std::string& text) {
+  constexpr std::array kKeys = {"eye=", "target=", "up=", "fov="};
+  const auto begins = [&text](const char* key) { return text.starts_with(key); };
+  if (std::none_of(kKeys.begin(), kKeys.end(), begins)) return;
+  try {
+    parseCamera(text, Up::y);
+  } catch (const InputError&) {
+    nameOption("--camera", [&text] { parseCamera(text, Up::z); });
+  }
+}
+
+}  // namespace
+
+void Request::validate() const {
+  apply(MeshOptions());
+  apply(FormFactorOptions());
+  apply(SolveOptions());
+  apply(GatherOptions());
+  apply(ElementOptions());
+  apply(HeatOptions());
+  nameOption("--max-image", [this] { scene.validate(); });
+  renderOptions();
+  exposureStops();
+  compareOptions();
+  lightmapOptions();
+  checkCamera(camera);
 }
 
 }  // namespace radiosity::cli

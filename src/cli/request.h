@@ -126,6 +126,11 @@ struct Request {
   CompareOptions compareOptions() const;
   /// The given options of the picture, without a size if none was given; validated.
   RenderOptions renderOptions() const;
+  /// The stops of --exposure; nothing for auto.
+  std::optional<double> exposureStops() const;
+
+  /// Checks all that needs no scene, so that no scene is read in vain. Errors: InputError.
+  void validate() const;
 };
 
 /// Calls check() and prefixes the option's name to an InputError that it throws.

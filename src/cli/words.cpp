@@ -99,14 +99,23 @@ double parseDuration(const std::string& option, const std::string& text) {
 
 std::optional<std::string> nearest(const std::string& word,
                                    std::span<const std::string> candidates) {
+  // One letter in four may differ, so that --symmetry is not taken for --symmetrize, which is
+  // another thing. What is only begun, as rend, is taken for the only word that begins so.
+  const std::size_t letters = word.size() - std::min(word.size(), word.find_first_not_of('-'));
   std::optional<std::string> best;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+  std::size_t least = std::max<std::size_t>(1, letters / 4) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = editDistance(word, candidate);
     if (distance < least) {
       least = distance;
       best = candidate;
     }
+  }
+  if (best || letters < 2) return best;
+  for (const std::string& candidate : candidates) {
+    if (!candidate.starts_with(word)) continue;
+    if (best) return std::nullopt;
+    best = candidate;
   }
   return best;
 }

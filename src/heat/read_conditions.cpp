@@ -293,6 +293,9 @@ ConditionText readConditionText(const std::string& csv_path, std::span<const std
   if (!csv_path.empty()) text.table = readWholeFile(csv_path);
   text.settings.assign(settings.begin(), settings.end());
   text.groups.assign(groups.begin(), groups.end());
+  // Names are looked up when the scene is there; what cannot be read is said at once.
+  if (!csv_path.empty()) parseConditionTable(text.origin, text.table);
+  for (const std::string& setting : text.settings) parseSetting(setting);
   return text;
 }
 

@@ -26,6 +26,52 @@ class BadArguments(CliTest):
         self.refuse("solve", "box.obj", "--solver", "jacoby", words=["--solver", "jacobi"])
         self.refuse("render", "box.obj", "-o", "p.png", "--show", "rowsum",
                     words=["--show", "did you mean row-sum?"])
+        self.refuse("rend", "box.obj", words=["rend", "did you mean render?"])
+
+    def test_another_thing_is_no_typo(self):
+        line = self.refuse("factors", "box.obj", "--symmetry", words=["unknown option --symmetry"])
+        self.assertNotIn("did you mean", line)
+        self.refuse("so", "box.obj", words=["did you mean solve?"])
+        self.refuse("re", "box.obj", words=["did you mean render?"])
+        line = self.refuse("x", "box.obj", words=["not a subcommand"])
+        self.assertNotIn("did you mean", line)
+
+    def test_help_is_a_word_too(self):
+        self.assertEqual(self.run_program("help").out, self.run_program("--help").out)
+        for command in ["info", "render"]:
+            self.assertEqual(self.run_program("help", command).out,
+                             self.run_program(command, "--help").out)
+        self.refuse("help", "rendr", words=["rendr", "did you mean render?"])
+
+    def test_what_needs_no_scene_is_checked_before_one_is_read(self):
+        # The scene is refused as soon as it is read, so the option's fault is found before.
+        self.write("broken.obj", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3\n")
+        self.refuse("info", "broken.obj", words=["broken.obj", "nan"])
+        picture = ["render", "broken.obj", "-o", "p.png"]
+        for arguments, word in [
+                (["factors", "broken.obj", "--tolerance", "0"], "--tolerance"),
+                (["factors", "broken.obj", "--resolution", "33"], "--resolution"),
+                (["gather", "broken.obj", "--resolution", "8"], "--resolution"),
+                (["gather", "broken.obj", "--passes", "0"], "--passes"),
+                (["mesh", "broken.obj", "--weld", "1"], "--weld"),
+                (["solve", "broken.obj", "--solve-tolerance", "2"], "--solve-tolerance"),
+                (["solve", "broken.obj", "--memory-limit", "much"], "--memory-limit"),
+                (["heat", "broken.obj", "--condition", "a.heat=3"], "a.heat=3"),
+                (["heat", "broken.obj", "--condition", "a.flux=3", "--band-edges", "5,4"],
+                 "--band-edges"),
+                (["compare", "broken.obj", "--gather", "--match", "1"], "--match"),
+                (["info", "broken.obj", "--max-image", "0"], "--max-image"),
+                ([*picture, "--width", "0"], "--width"),
+                ([*picture, "--samples", "17"], "--samples"),
+                ([*picture, "--crease", "-1"], "--crease"),
+                ([*picture, "--exposure", "x"], "--exposure"),
+                ([*picture, "--element-tolerance", "2"], "--element-tolerance"),
+                ([*picture, "--camera", "eye=1,2"], "--camera"),
+                ([*picture, "--camera", "eye=1,2,3;target=1,2,3"], "--camera"),
+                ([*picture, "--camera", "target=0,0,0"], "--camera"),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.assertNotIn("broken.obj:", self.refuse(*arguments, words=[word]))
 
     def test_missing_and_superfluous_arguments_are_refused(self):
         self.refuse(words=["subcommand"])
