@@ -1,5 +1,6 @@
 #include "mesh/welded_points.h"
 
+#include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -11,25 +12,41 @@ std::uint64_t WeldedPoints::key(const Cell& cell) {
          std::uint64_t(cell.z) * 0x165667b19e3779f9ull;
 }
 
-Index WeldedPoints::find(const Vec3& p) const {
+/// Calls take(point, distance) for each point closer than the radius. Two cells may share a key:
+/// then it may be called twice for a point.
+template <class Take>
+void WeldedPoints::forNear(const Vec3& p, const Take& take) const {
   // Cells are two radii wide, so a ball around p meets at most the eight cells around its nearest
   // cell corner.
   const Cell base(glm::floor(p / cell_ - 0.5));
-  Index best = kNone;
-  double best_distance = radius_;
   for (int corner = 0; corner < 8; ++corner) {
     const Cell cell = base + Cell(corner & 1, corner >> 1 & 1, corner >> 2);
     const auto [begin, end] = cells_.equal_range(key(cell));
     for (auto it = begin; it != end; ++it) {
       const double d = glm::distance(points_[it->second], p);
-      // Of equally near points the older wins, so that the order within a bucket does not matter.
-      if (d < best_distance || (d == best_distance && best != kNone && it->second < best)) {
-        best = it->second;
-        best_distance = d;
-      }
+      if (d < radius_) take(it->second, d);
     }
   }
+}
+
+Index WeldedPoints::find(const Vec3& p) const {
+  Index best = kNone;
+  double best_distance = radius_;
+  forNear(p, [&](Index point, double d) {
+    // Of equally near points the older wins, so that the order within a bucket does not matter.
+    if (d > best_distance || (d == best_distance && point > best)) return;
+    best = point;
+    best_distance = d;
+  });
   return best;
+}
+
+std::vector<Index> WeldedPoints::findAll(const Vec3& p) const {
+  std::vector<Index> out;
+  forNear(p, [&](Index point, double) { out.push_back(point); });
+  std::ranges::sort(out);
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
 }
 
 Index WeldedPoints::insert(const Vec3& p) {
@@ -48,6 +65,42 @@ void WeldedPoints::retire(Index i) {
     cells_.erase(it);
     return;
   }
+}
+
+std::vector<Index> weldPoints(std::span<const Vec3> places, double radius, WeldedPoints& points) {
+  WeldedPoints found(radius);
+  std::vector<Index> of_place;  // into found
+  std::vector<std::vector<Index>> members;
+  for (Index k = 0; k < places.size(); ++k) {
+    of_place.push_back(found.insert(places[k]));
+    members.resize(found.size());
+    members[of_place.back()].push_back(k);
+  }
+  // Noise as large as the radius leaves several points where one was meant.
+  for (Index k = 0; k < places.size(); ++k) {
+    const std::vector<Index> group = found.findAll(places[k]);
+    const auto isNear = [&](Index other) {
+      return glm::distance(places[k], places[other]) < radius;
+    };
+    const auto areNear = [&](Index point) { return std::ranges::all_of(members[point], isNear); };
+    if (group.size() < 2 || !std::ranges::all_of(group, areNear)) continue;
+    for (const Index point : group) found.retire(point);
+    const Index one = found.insert(places[k]);
+    members.resize(found.size());
+    for (const Index point : group) {
+      for (const Index member : members[point]) of_place[member] = one;
+      members[one].insert(members[one].end(), members[point].begin(), members[point].end());
+      members[point].clear();
+    }
+  }
+  // Numbered by place, as points were that are one from the start.
+  points = WeldedPoints(radius);
+  std::vector<Index> number(found.size(), kNone);
+  for (Index& point : of_place) {
+    if (number[point] == kNone) number[point] = points.insert(found[point]);
+    point = number[point];
+  }
+  return of_place;
 }
 
 }  // namespace radiosity

@@ -92,13 +92,16 @@ void Cleaner::weld(double weld) {
   out_.origin = box.low + 0.5 * (box.high - box.low);
   out_.coincidence = std::max(weld, kRounding) * glm::distance(box.low, box.high);
   if (out_.coincidence <= 0) return;
-  out_.points = WeldedPoints(out_.coincidence);
   // Lexicographic order, so that the points do not depend on the order in the file.
   std::sort(used.begin(), used.end(), [&](Index a, Index b) {
     return lexicographic(scene_.vertices[a], scene_.vertices[b]);
   });
+  std::vector<Vec3> places;
+  places.reserve(used.size());
+  for (const Index v : used) places.push_back(scene_.vertices[v] - out_.origin);
   welded_.assign(scene_.vertices.size(), kNone);
-  for (const Index v : used) welded_[v] = out_.points.insert(scene_.vertices[v] - out_.origin);
+  const std::vector<Index> welded = weldPoints(places, out_.coincidence, out_.points);
+  for (std::size_t k = 0; k < used.size(); ++k) welded_[used[k]] = welded[k];
   report_.welded_vertices = used.size() - out_.points.size();
 }
 

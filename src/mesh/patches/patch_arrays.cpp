@@ -1,6 +1,7 @@
 #include "mesh/patches/patch_arrays.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -12,8 +13,9 @@ namespace radiosity {
 
 namespace {
 
-// The least height of a triangle over a side, as a share of the side. Below, the triangle lies on
-// the side but for rounding, and its area and centroid are arbitrary.
+// The least height of a triangle over a side, as a share of the largest coordinate and of the side.
+// Below, the triangle lies on the side but for rounding: its area and centroid are arbitrary, and
+// once its corners are moved it may be turned over.
 constexpr double kNoArea = 0x1p-44;
 
 /// Numbers the points of the cut complex that are in use: vertices of the complex first, then edge
@@ -82,8 +84,10 @@ struct CellTriangles {
 
   Vec3 centroid() const { return base + moment / area; }
   /// `corner`: 3 or 4, counter-clockwise about `normal`; positions are `points`. False, and nothing
-  /// is added, if rounding leaves the cell no area.
-  bool add(std::span<const Index> corner, const Vec3& normal, std::span<const Vec3> points) {
+  /// is added, if rounding leaves the cell no area; `thinnest`: a height that rounding may change by
+  /// as much.
+  bool add(std::span<const Index> corner, const Vec3& normal, std::span<const Vec3> points,
+           double thinnest) {
     double total = 0;
     Vec3 about(0.0);
     const Vec3 first = points[corner[0]];
@@ -91,7 +95,8 @@ struct CellTriangles {
       const Vec3 a = points[corner[k - 1]] - first;
       const Vec3 b = points[corner[k]] - first;
       const double part = 0.5 * glm::dot(glm::cross(a, b), normal);
-      if (!(part > kNoArea * glm::length(a) * glm::length(b))) return false;
+      const double height = std::max(thinnest, kNoArea * std::min(glm::length(a), glm::length(b)));
+      if (!(part > height * std::max(glm::length(a), glm::length(b)))) return false;
       total += part;
       about += part * (a + b) / 3.0;
     }
@@ -104,6 +109,16 @@ struct CellTriangles {
     return true;
   }
 };
+
+/// Of points that are to be moved by `origin`.
+double largestCoordinate(std::span<const Vec3> points, const Vec3& origin) {
+  double largest = 0;
+  for (const Vec3& p : points) {
+    const Vec3 place = glm::max(glm::abs(p), glm::abs(p + origin));
+    largest = std::max({largest, place.x, place.y, place.z});
+  }
+  return largest;
+}
 
 /// The corners of a cell by the numbers of the mesh.
 class CellCorners {
@@ -150,20 +165,22 @@ Vec3 middleOf(const CellTriangles& patch, const Vec3& normal, std::span<const Ve
 /// Appends a patch of one or several cells; positions are still near the origin. False, and nothing
 /// is appended, if rounding leaves it no area.
 bool appendPatch(PatchMesh& mesh, const PolygonCells& polygon, Index number,
-                 const CellCorners& corners, std::span<const Vec3> points) {
+                 const CellCorners& corners, std::span<const Vec3> points, double thinnest) {
   const Vec3 normal = mesh.polygons.normal.back();
   CellTriangles patch;
   std::vector<Index> around;
   if (polygon.groups.empty()) {
     around = corners(cornersOf(polygon.cells[number]));
-    patch.add(around, normal, points);
+    patch.add(around, normal, points, thinnest);
   } else {
     const CellGroup& group = polygon.groups[number];
     around = corners(group.outline);
-    for (const auto& triangle : group.triangles) patch.add(corners(triangle), normal, points);
+    for (const auto& triangle : group.triangles) {
+      patch.add(corners(triangle), normal, points, thinnest);
+    }
     for (const Index c : group.cells) {
       if (!group.triangles.empty()) break;
-      patch.add(corners(cornersOf(polygon.cells[c])), normal, points);
+      patch.add(corners(cornersOf(polygon.cells[c])), normal, points, thinnest);
     }
   }
   if (patch.triangles.empty()) return false;
@@ -210,6 +227,7 @@ PatchMesh assemblePatches(const CoarseComplex& complex, const Scene& scene, cons
   mesh.polygons.loop_offset = mesh.polygons.corner_offset = {0};
   std::vector<std::size_t> first_patch;
   std::vector<Index> two_sided;
+  const double thinnest = kNoArea * largestCoordinate(numbers.points(), complex.origin);
   for (std::size_t p = 0; p < complex.polygons.size(); ++p) {
     const CoarsePolygon& coarse = complex.polygons[p];
     const std::size_t source = cellSource(complex, p);
@@ -219,7 +237,7 @@ PatchMesh assemblePatches(const CoarseComplex& complex, const Scene& scene, cons
     const PolygonCells& polygon = cells[source];
     const CellCorners corners(numbers, polygon, source, flip);
     for (Index k = 0; k < polygon.patches(); ++k) {
-      if (!appendPatch(mesh, polygon, k, corners, numbers.points())) continue;
+      if (!appendPatch(mesh, polygon, k, corners, numbers.points(), thinnest)) continue;
       if (coarse.back) two_sided.push_back(Index(mesh.size() - 1));
       mesh.polygon.push_back(Index(p));
       mesh.surface.push_back(coarse.surface);

@@ -148,7 +148,9 @@ class ElementBuilder {
     for (const Index vertex : mesh_.outline(patch)) corners.push_back(place(vertex));
     if (corners.size() > 4) corners = withoutLevelCorners(corners);
     if (corners.size() <= 4 && isConvex(corners, normal, set_.coincidence)) {
-      pieces.push_back(makePiece(patch, corners));
+      const Piece piece = makePiece(patch, corners);
+      const auto [first, second] = halves(piece.corners);
+      if (glm::dot(first + second, normal) > 0) pieces.push_back(piece);
       return;
     }
     const std::size_t triangles = mesh_.piece_offset[patch + 1] - mesh_.piece_offset[patch];

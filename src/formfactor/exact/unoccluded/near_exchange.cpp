@@ -31,6 +31,9 @@ constexpr int kLeastPoints = 2;
 constexpr int kMostPoints = 8;
 /// Loss of contours to cancellation, as a share of the square of the pair's extent.
 constexpr double kContourRounding = 1e-16;
+/// Where the loss is more than this share of the exchange, or all of it, points are better at any
+/// distance.
+constexpr double kContourUseless = 1e-2;
 
 /// The least n for which n x n points are good for the tolerance: the error is below
 /// kLambertError ratio^(2n - 1), ratio = radius / distance (a triangle's Jacobian takes one
@@ -129,9 +132,10 @@ NearValue nearExchange(const PlanarElement& a, const PlanarElement& b, double to
   const double exchange = contourExchange(a.outline, b.outline, tolerance);
   // Thin elements exchange little for their length: there contours may have too few digits left.
   const double extent = glm::distance(a.centroid, b.centroid) + a.radius + b.radius;
-  const bool exact = kContourRounding * extent * extent <= tolerance * exchange;
-  if (exact || points > kMostLambert) return {exchange, true};
-  return {lambertExchange(small, large, points, kernels), false};
+  const double lost = kContourRounding * extent * extent;
+  const bool too_near = points > kMostLambert;
+  if (lost <= (too_near ? kContourUseless : tolerance) * exchange) return {exchange, true};
+  return {lambertExchange(small, large, std::min(points, kMostLambert), kernels), false};
 }
 
 }  // namespace radiosity

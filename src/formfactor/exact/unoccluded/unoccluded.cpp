@@ -234,7 +234,8 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
         }
       }
       double* run_out = out + (run.first - work.columns.first);
-      for (Index k = 0; k < run.size(); ++k) run_out[k] += double(tile.values[k]);
+      // An element that touches the horizon within coincidence may reach below it by its rounding.
+      for (Index k = 0; k < run.size(); ++k) run_out[k] += std::max(double(tile.values[k]), 0.0);
     }
     if (!tile.parts.empty()) cutColumns(part, far, out, work, tile);
   }
@@ -252,7 +253,8 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
       const PlanarElement piece{column.outline(), work.column_plane.normal, column.shape.centroid,
                                 column.radius};
       out[column.element - work.columns.first] +=
-          tile.values[k] == T(kNearPair) ? nearPair(part, piece, work) : double(tile.values[k]);
+          tile.values[k] == T(kNearPair) ? nearPair(part, piece, work)
+                                         : std::max(double(tile.values[k]), 0.0);
     }
   }
 
