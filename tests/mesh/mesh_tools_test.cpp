@@ -271,7 +271,7 @@ struct SquareGrid {
 TEST(JoinCells, EveryCellIsInOnePatchOfNoMoreThanTheSize) {
   const SquareGrid grid(12);
   for (const double size : {1.0, 1.5, 2.5, 4.1, 100.0}) {
-    const std::vector<CellGroup> groups = joinCells(grid.cells, {}, grid.points, size);
+    const std::vector<CellGroup> groups = joinCells(grid.cells, {}, grid.points, {size});
     std::vector<int> used(grid.cells.size(), 0);
     for (const CellGroup& group : groups) {
       for (const Index c : group.cells) ++used[c];
@@ -286,7 +286,7 @@ TEST(JoinCells, EveryCellIsInOnePatchOfNoMoreThanTheSize) {
     // Joined groups are more than half the allowed size on average.
     EXPECT_LT(double(groups.size()), 2 * 144 / (size * size) + 1) << size;
   }
-  EXPECT_EQ(joinCells(grid.cells, {}, grid.points, 1.0).size(), grid.cells.size());
+  EXPECT_EQ(joinCells(grid.cells, {}, grid.points, {1.0}).size(), grid.cells.size());
 }
 
 TEST(JoinCells, GroupsDoNotCrossInnerEdges) {
@@ -294,7 +294,7 @@ TEST(JoinCells, GroupsDoNotCrossInnerEdges) {
   // A wall along the second row of points.
   std::vector<std::array<Index, 2>> wall;
   for (Index x = 0; x < 4; ++x) wall.push_back({10 + x, 11 + x});
-  const std::vector<CellGroup> groups = joinCells(grid.cells, wall, grid.points, 3.0);
+  const std::vector<CellGroup> groups = joinCells(grid.cells, wall, grid.points, {3.0});
   for (const CellGroup& group : groups) {
     const bool below = group.cells.front() < 8;
     for (const Index c : group.cells) EXPECT_EQ(c < 8, below);

@@ -18,11 +18,26 @@ using CornerPair = std::pair<Index, Index>;
 /// and an L of three squares 21.3. A worse patch may only come from worse parts.
 constexpr double kCompact = 22;
 
+/// Whether a patch is lower than `thinnest` over its longest edge.
+bool isThinPatch(std::span<const Index> outline, std::span<const Vec3> points, double area,
+                 double thinnest) {
+  double longest = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    longest = std::max(longest,
+                       glm::distance(points[outline[i]], points[outline[(i + 1) % outline.size()]]));
+  }
+  return 2 * area <= thinnest * longest;
+}
+
+std::span<const Index> outlineOf(const Cell& cell) {
+  return {cell.data(), cell.size() - (cell[3] == kNone ? 1 : 0)};
+}
+
 class CellJoiner {
  public:
   CellJoiner(std::span<const Cell> cells, std::span<const std::array<Index, 2>> inner,
-             std::span<const Vec3> points, double size)
-      : points_(points), size_(size) {
+             std::span<const Vec3> points, const JoinLimits& limits)
+      : points_(points), size_(limits.size), thinnest_(limits.thinnest) {
     for (const auto& [from, to] : inner) {
       kept_.emplace_back(from, to);
       kept_.emplace_back(to, from);
@@ -56,11 +71,12 @@ class CellJoiner {
     double area = 0;
     Vec3 moment{0.0};  ///< area times centroid
     double shape = 0;  ///< see shapeOf()
+    bool thin = false;
   };
 
   void add(const Cell& cell, Index c) {
     Patch& patch = patches_.emplace_back();
-    patch.group.outline.assign(cell.begin(), cell.end() - (cell[3] == kNone ? 1 : 0));
+    patch.group.outline.assign(outlineOf(cell).begin(), outlineOf(cell).end());
     patch.group.cells = {c};
     const std::vector<Index>& outline = patch.group.outline;
     for (std::size_t k = 2; k < outline.size(); ++k) {
@@ -72,6 +88,7 @@ class CellJoiner {
       patch.moment += area * (a + b + d) / 3.0;
     }
     patch.shape = shapeOf(outline, patch.area);
+    patch.thin = isThin(outline, patch.area);
     for (std::size_t i = 0; i < outline.size(); ++i) {
       owner_.push_back({{outline[i], outline[(i + 1) % outline.size()]}, c});
     }
@@ -114,6 +131,7 @@ class CellJoiner {
     a.area += b.area;
     a.moment += b.moment;
     a.shape = best.shape;
+    a.thin = isThin(a.group.outline, a.area);
     b.group = {};
     own(k);
     return true;
@@ -123,13 +141,19 @@ class CellJoiner {
   Union unionWith(Index k, Index other) const {
     const Patch& a = patches_[k];
     const Patch& b = patches_[other];
+    const bool any = a.thin || b.thin;
     const double area = a.area + b.area;
-    if (area > size_ * size_) return {};
+    if (!any && area > size_ * size_) return {};
     std::vector<Index> outline = joinLoops(a.group.outline, b.group.outline);
-    if (outline.empty() || !isWithinReach(outline, (a.moment + b.moment) / area)) return {};
+    if (outline.empty()) return {};
+    if (!any && !isWithinReach(outline, (a.moment + b.moment) / area)) return {};
     const double shape = shapeOf(outline, area);
-    if (shape > std::max({kCompact, a.shape, b.shape})) return {};
+    if (!any && shape > std::max({kCompact, a.shape, b.shape})) return {};
     return {other, std::move(outline), shape};
+  }
+
+  bool isThin(const std::vector<Index>& outline, double area) const {
+    return isThinPatch(outline, points_, area, thinnest_);
   }
 
   bool isWithinReach(const std::vector<Index>& outline, const Vec3& centroid) const {
@@ -169,6 +193,7 @@ class CellJoiner {
 
   std::span<const Vec3> points_;
   double size_;
+  double thinnest_;
   std::vector<CornerPair> kept_;  ///< ascending
   std::vector<Patch> patches_;
   std::vector<Owner> owner_;  ///< ascending by edge
@@ -201,10 +226,19 @@ void dropInnerCorners(CellGroup& group, std::span<const Cell> cells, std::span<c
 
 }  // namespace
 
+bool anyThin(std::span<const Cell> cells, std::span<const Vec3> points, double thinnest) {
+  return std::ranges::any_of(cells, [&](const Cell& cell) {
+    const std::span<const Index> outline = outlineOf(cell);
+    const Vec3 area =
+        vectorArea(outline.size(), [&](std::size_t k) { return points[outline[k]]; });
+    return isThinPatch(outline, points, glm::length(area), thinnest);
+  });
+}
+
 std::vector<CellGroup> joinCells(std::span<const Cell> cells,
                                  std::span<const std::array<Index, 2>> inner,
-                                 std::span<const Vec3> points, double size) {
-  std::vector<CellGroup> groups = CellJoiner(cells, inner, points, size).run();
+                                 std::span<const Vec3> points, const JoinLimits& limits) {
+  std::vector<CellGroup> groups = CellJoiner(cells, inner, points, limits).run();
   for (CellGroup& group : groups) {
     std::sort(group.cells.begin(), group.cells.end());
     dropInnerCorners(group, cells, points);

@@ -37,6 +37,8 @@ constexpr double kCoarser = 1.5;  // the most by which these cuts may enlarge ot
 // The background grid has one step across polygons of less than 1.5 sizes: the number of steps is
 // the polygon's width over the size, rounded, and at least one. A little less allows for rounding.
 constexpr double kPlainDiameter = 1.49;
+// Cells lower than this, in coincidences, come of corners that noise has moved: no patch of its own.
+constexpr double kThin = 4.0;
 constexpr double kNoOpposites = std::numeric_limits<double>::infinity();
 
 double areaOf(const CoarseComplex& complex, const CoarsePolygon& polygon) {
@@ -105,13 +107,7 @@ class Subdivision {
   /// Joins cells to patches of up to size^2; returns the number of patches.
   std::size_t join(double size) {
     parallelFor(cells_.size(), 16, [&](std::size_t p) {
-      PolygonCells& polygon = cells_[p];
-      if (progress_.cancelled() || polygon.cells.size() < 2) return;
-      std::vector<Vec3> points;
-      points.reserve(polygon.boundary.size() + polygon.interior.size());
-      for (const Index id : polygon.boundary) points.push_back(cuts_.point(id));
-      points.insert(points.end(), polygon.interior.begin(), polygon.interior.end());
-      polygon.groups = joinCells(polygon.cells, polygon.inner, points, size);
+      if (!progress_.cancelled()) joinCellsOf(cells_[p], size);
     });
     progress_.check();
     return recount();
@@ -126,6 +122,19 @@ class Subdivision {
   const std::vector<PolygonCells>& cells() const { return cells_; }
 
  private:
+  /// `size`: 0 to join thin cells alone.
+  void joinCellsOf(PolygonCells& polygon, double size) const {
+    polygon.groups.clear();
+    if (polygon.cells.size() < 2) return;
+    std::vector<Vec3> points;
+    points.reserve(polygon.boundary.size() + polygon.interior.size());
+    for (const Index id : polygon.boundary) points.push_back(cuts_.point(id));
+    points.insert(points.end(), polygon.interior.begin(), polygon.interior.end());
+    const JoinLimits limits{size, kThin * complex_.coincidence};
+    if (size == 0 && !anyThin(polygon.cells, points, limits.thinnest)) return;
+    polygon.groups = joinCells(polygon.cells, polygon.inner, points, limits);
+  }
+
   /// How the cells of a polygon were made: those of plain ones suit any size (isPlain()).
   enum class Made : char { to_size, plain, plain_as_it_is };
 
@@ -148,17 +157,18 @@ class Subdivision {
     parallelFor(cells_.size(), 16, [&](std::size_t p) {
       if (progress_.cancelled() || cellSource(complex_, p) != p) return;
       const bool plain = isPlain(p, size);
-      cells_[p].groups.clear();
       CellSize here = size;
       here.improve = size.improve || !plain;
       const Made made = !plain ? Made::to_size : here.improve ? Made::plain : Made::plain_as_it_is;
       if (plain && made_[p] == made) {
+        if (!cells_[p].groups.empty()) joinCellsOf(cells_[p], 0);
         progress_.advance();
         return;
       }
       made_[p] = Made::to_size;
       if (auto cells = cellsOf(complex_, cuts_, p, here)) {
         cells_[p] = std::move(*cells);
+        joinCellsOf(cells_[p], 0);
         made_[p] = made;
       } else {
         cells_[p] = {};
