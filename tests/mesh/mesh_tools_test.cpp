@@ -18,6 +18,7 @@
 #include "mesh/cells/region/region.h"
 #include "mesh/cells/sharp_corners.h"
 #include "mesh/patches/face_locator.h"
+#include "mesh/welded_points.h"
 #include "scene/checks/winding_tree.h"
 
 namespace radiosity::test {
@@ -300,6 +301,45 @@ TEST(JoinCells, GroupsDoNotCrossInnerEdges) {
     for (const Index c : group.cells) EXPECT_EQ(c < 8, below);
   }
   EXPECT_LE(groups.size(), 4u);
+}
+
+TEST(JoinCells, AThinCellIsPartOfItsNeighboursPatch) {
+  // Two squares, each with a triangle of a height of 1e-7 on it.
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0},       {2, 1, 0},
+                                 {1, 1, 0}, {0, 1, 0}, {1, 1 + 1e-7, 0}};
+  const std::vector<Cell> cells{{0, 1, 4, 5}, {1, 2, 3, 4}, {5, 4, 6, kNone}, {4, 3, 6, kNone}};
+  EXPECT_FALSE(anyThin(cells, points, 0.9e-7));
+  EXPECT_TRUE(anyThin(cells, points, 1.1e-7));
+  EXPECT_EQ(joinCells(cells, {}, points, {0, 0.9e-7}).size(), 4u);
+  const std::vector<CellGroup> groups = joinCells(cells, {}, points, {0, 1.1e-7});
+  ASSERT_EQ(groups.size(), 2u);
+  for (const CellGroup& group : groups) {
+    EXPECT_EQ(group.cells.size(), 2u);
+    EXPECT_EQ(group.outline.size(), 5u);
+  }
+}
+
+TEST(WeldPoints, AGroupIsOneOrSeveralWhateverItsOrder) {
+  // In steps of 0.9 radii: the middle of three is near both others.
+  const double step = 0.9e-3;
+  const auto count = [&](const std::vector<double>& at) {
+    std::vector<Vec3> places;
+    for (const double x : at) places.emplace_back(x * step, 1, 2);
+    WeldedPoints points(1e-3);
+    const std::vector<Index> point = weldPoints(places, 1e-3, points);
+    EXPECT_EQ(point.size(), places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      EXPECT_LT(glm::distance(points[point[k]], places[k]), 1e-3);
+    }
+    return points.size();
+  };
+  EXPECT_EQ(count({0, 1}), 1u);
+  EXPECT_EQ(count({0, 2}), 2u);
+  EXPECT_EQ(count({0, 1, 2}), 1u);
+  EXPECT_EQ(count({2, 0, 1}), 1u);
+  EXPECT_EQ(count({0, 2, 1}), 1u);
+  // A chain has no middle near all.
+  EXPECT_GT(count({0, 1, 2, 3, 4, 5}), 1u);
 }
 
 }  // namespace

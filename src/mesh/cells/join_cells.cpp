@@ -23,8 +23,8 @@ bool isThinPatch(std::span<const Index> outline, std::span<const Vec3> points, d
                  double thinnest) {
   double longest = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    longest = std::max(longest,
-                       glm::distance(points[outline[i]], points[outline[(i + 1) % outline.size()]]));
+    longest = std::max(
+        longest, glm::distance(points[outline[i]], points[outline[(i + 1) % outline.size()]]));
   }
   return 2 * area <= thinnest * longest;
 }
@@ -229,8 +229,7 @@ void dropInnerCorners(CellGroup& group, std::span<const Cell> cells, std::span<c
 bool anyThin(std::span<const Cell> cells, std::span<const Vec3> points, double thinnest) {
   return std::ranges::any_of(cells, [&](const Cell& cell) {
     const std::span<const Index> outline = outlineOf(cell);
-    const Vec3 area =
-        vectorArea(outline.size(), [&](std::size_t k) { return points[outline[k]]; });
+    const Vec3 area = vectorArea(outline.size(), [&](std::size_t k) { return points[outline[k]]; });
     return isThinPatch(outline, points, glm::length(area), thinnest);
   });
 }

@@ -37,7 +37,8 @@ constexpr double kCoarser = 1.5;  // the most by which these cuts may enlarge ot
 // The background grid has one step across polygons of less than 1.5 sizes: the number of steps is
 // the polygon's width over the size, rounded, and at least one. A little less allows for rounding.
 constexpr double kPlainDiameter = 1.49;
-// Cells lower than this, in coincidences, come of corners that noise has moved: no patch of its own.
+// Cells lower than this, in coincidences, come of corners that noise has moved: no patch of its
+// own.
 constexpr double kThin = 4.0;
 constexpr double kNoOpposites = std::numeric_limits<double>::infinity();
 

@@ -84,8 +84,8 @@ struct CellTriangles {
 
   Vec3 centroid() const { return base + moment / area; }
   /// `corner`: 3 or 4, counter-clockwise about `normal`; positions are `points`. False, and nothing
-  /// is added, if rounding leaves the cell no area; `thinnest`: a height that rounding may change by
-  /// as much.
+  /// is added, if rounding leaves the cell no area; `thinnest`: a height that rounding may change
+  /// by as much.
   bool add(std::span<const Index> corner, const Vec3& normal, std::span<const Vec3> points,
            double thinnest) {
     double total = 0;

@@ -252,9 +252,9 @@ class UnoccludedKernel::Typed : public UnoccludedKernel::Implementation {
       const ElementPart& column = tile.parts[k];
       const PlanarElement piece{column.outline(), work.column_plane.normal, column.shape.centroid,
                                 column.radius};
-      out[column.element - work.columns.first] +=
-          tile.values[k] == T(kNearPair) ? nearPair(part, piece, work)
-                                         : std::max(double(tile.values[k]), 0.0);
+      out[column.element - work.columns.first] += tile.values[k] == T(kNearPair)
+                                                      ? nearPair(part, piece, work)
+                                                      : std::max(double(tile.values[k]), 0.0);
     }
   }
 
