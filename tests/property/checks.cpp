@@ -114,10 +114,13 @@ class Checker {
     return computeFormFactors(plan, silent_);
   }
 
-  bool isNoted(const std::string& word) const {
-    const auto has = [&](const Note& note) { return note.text.find(word) != std::string::npos; };
-    return std::any_of(scene_.notes.begin(), scene_.notes.end(), has) ||
-           std::any_of(result_.report.notes.begin(), result_.report.notes.end(), has);
+  bool isNoted(const std::string& word, const std::vector<Note>& of_factors = {}) const {
+    const auto has = [&](const std::vector<Note>& notes) {
+      return std::any_of(notes.begin(), notes.end(), [&](const Note& note) {
+        return note.text.find(word) != std::string::npos;
+      });
+    };
+    return has(scene_.notes) || has(result_.report.notes) || has(of_factors);
   }
 
   /// No area is lost without a word.
@@ -202,11 +205,10 @@ class Checker {
     }
     const EnergyAccount& e = s.summary.energy;
     const double in = e.emitted[0] + e.from_sky[0];
-    // A hemicube's pairs are two estimates that are off by some per cent; rays state about 1e-2 of
-    // the matrix.
-    const double most = f.method == FactorsFrom::hemicube ? 0.1
-                        : f.method == FactorsFrom::rays   ? 5e-3
-                                                          : 2e-3;
+    // A hemicube's pairs are two estimates that are off by some per cent, and nobody says by how
+    // much.
+    const double most =
+        f.method == FactorsFrom::hemicube ? 0.05 : std::max(5e-3, f.report.error_figure);
     if (!(std::abs(e.imbalance[0]) <= most * in)) {
       fault("energy " + by, "{:.3g}% of {:.4g} W is on no account, usable",
             100 * e.imbalance[0] / in, in);
@@ -348,7 +350,8 @@ class Checker {
 
   /// A room turned inside out sees nothing of itself, and somebody says so.
   void checkInsideOut(const FormFactors& truth) {
-    const bool noted = isNoted("outward") || isNoted("--flip");
+    const std::vector<Note>& notes = truth.report.notes;
+    const bool noted = isNoted("outward", notes) || isNoted("--flip", notes);
     if (truth.matrix.nonZeros() == 0 && !noted) {
       fault("inside out", "nothing sees anything, and no note says why");
     }

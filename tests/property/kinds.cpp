@@ -58,6 +58,12 @@ Part part(Draw& draw, const std::string& name, double radiance = 0) {
   return made;
 }
 
+/// Nothing leads out of the room.
+void isClosed(Model& model) {
+  model.known.closed = true;
+  model.known.sky_area = 0;
+}
+
 /// Half the size of a room, about 2.
 Vec3 addRoom(Model& model, Draw& draw) {
   const Vec3 half = draw.point(Vec3(0.5), Vec3(1.5));
@@ -109,7 +115,7 @@ void furnishedRoom(Model& model, Draw& draw, int boxes) {
 
 void boxesInARoom(Model& model, Draw& draw) {
   furnishedRoom(model, draw, 4);
-  model.known.closed = true;
+  isClosed(model);
 }
 
 /// Quadrilaterals become triangles, as most programs write them.
@@ -125,12 +131,18 @@ void triangulate(Model& model) {
   }
 }
 
-/// Moves every corner of every face by up to a share of the scene's size.
+/// Moves coordinates of all corners of all faces by up to a share of the scene's size. As by
+/// rounding, some stay as they are.
 void shake(Model& model, Draw& draw, double share) {
   const double by = share * model.extent();
+  const double moved = draw.chance(0.5) ? 1.0 : 0.6;
   for (Part& part : model.parts) {
     for (Loop& face : part.faces) {
-      for (Vec3& p : face) p += by * draw.point(Vec3(-1), Vec3(1));
+      for (Vec3& p : face) {
+        for (int axis = 0; axis < 3; ++axis) {
+          if (draw.chance(moved)) p[axis] += by * draw.uniform(-1, 1);
+        }
+      }
     }
   }
 }
@@ -154,27 +166,31 @@ void noise(Model& model, Draw& draw) {
   if (draw.chance(0.7)) triangulate(model);
   // Half of them near the coincidence of 1e-7 of the diagonal.
   shake(model, draw, draw.chance(0.5) ? draw.powerOfTen(-9, -5) : draw.powerOfTen(-7.5, -6.5));
-  model.patches = std::size_t(draw.powerOfTen(1, 2.5));
+  model.patches = std::size_t(draw.powerOfTen(1, 2.9));
 }
 
 /// Boxes that stand on the floor, against walls and on each other.
 void touching(Model& model, Draw& draw) {
   const Vec3 half = addRoom(model, draw);
   addLamp(model, draw, half);
+  const double least = std::min({half.x, half.y, half.z});
   double z = -half.z;
   const int count = draw.integer(2, 4);
   const bool in_corner = draw.chance(0.5);
   for (int k = 0; k < count; ++k) {
-    const Vec3 size = Vec3(0.2, 0.25, 0.1) * draw.uniform(0.6, 1.2);
+    const Vec3 size = Vec3(0.2, 0.25, 0.1) * draw.uniform(0.6, 1.2) * least;
     Part made = part(draw, "box" + std::to_string(k));
-    const Vec3 centre = in_corner ? Vec3(size.x - half.x, size.y - half.y, z + size.z)
-                                  : Vec3(0.1 * k, draw.uniform(-0.1, 0.1), z + size.z);
+    const Vec3 centre = in_corner
+                            ? Vec3(size.x - half.x, size.y - half.y, z + size.z)
+                            : Vec3(0.1 * k * least, draw.uniform(-0.1, 0.1) * least, z + size.z);
     made.faces = box(size, in_corner ? kUpright : aboutVertical(draw), centre);
     model.parts.push_back(std::move(made));
     z += 2 * size.z;
-    if (draw.chance(0.4)) z = -half.z;  // beside or into the others, on the floor
+    // Back to the floor, beside or into the others.
+    if (z + 0.3 * least > half.z || draw.chance(0.4)) z = -half.z;
   }
-  if (z < half.z) model.known.closed = true;
+  model.patches = std::size_t(draw.integer(2, 40));
+  isClosed(model);
 }
 
 /// Triangles and strips thinner than anything in the room.
@@ -197,7 +213,7 @@ void slivers(Model& model, Draw& draw) {
   }
   model.parts.push_back(std::move(thin));
   model.finest = 3e-6;
-  model.known.closed = true;
+  isClosed(model);
 }
 
 /// Rugs, panels and lamps that lie in the floor and the walls, over each other.
@@ -216,7 +232,7 @@ void coplanar(Model& model, Draw& draw) {
     made.faces.push_back(std::move(face));
     model.parts.push_back(std::move(made));
   }
-  model.known.closed = true;
+  isClosed(model);
 }
 
 /// Boxes that run through each other and sheets that cut them.
@@ -239,7 +255,8 @@ void crossing(Model& model, Draw& draw) {
     sheet.faces.push_back(parallelogram(-0.5 * (u + v), u, v));
     model.parts.push_back(std::move(sheet));
   }
-  model.known.closed = true;
+  model.patches = std::size_t(draw.integer(2, 40));  // cuts make more
+  isClosed(model);
 }
 
 /// A lamp that goes through a wall: a box or a plate.
