@@ -438,7 +438,9 @@ void terrain(Model& model, Draw& draw) {
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= n; ++j) at.emplace_back(i, j, rough * draw.uniform(0, 1));
   }
-  const auto point = [&](int i, int j) { return at[std::size_t(i * (n + 1) + j)]; };
+  const auto point = [&](int i, int j) {
+    return at[std::size_t(i) * std::size_t(n + 1) + std::size_t(j)];
+  };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       ground.faces.push_back({point(i, j), point(i + 1, j), point(i + 1, j + 1)});

@@ -2,6 +2,7 @@
 // scenes by all methods, and what must hold of each; see README.md. Exit code 1 if something does
 // not hold: the scene is then in the folder, with the command that shows it.
 #include <fmt/format.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -32,7 +33,7 @@ struct Arguments {
   std::string kind;  ///< empty: all
   std::string folder;
   double shrink_seconds = 20;
-  unsigned most_seconds = 300;  ///< of a scene
+  long most_seconds = 120;  ///< of a scene
 };
 
 template <class Value>
@@ -65,7 +66,7 @@ Arguments parse(const std::vector<std::string>& words) {
     else if (name == "--shrink")
       given.shrink_seconds = number<double>(name, value);
     else if (name == "--limit")
-      given.most_seconds = number<unsigned>(name, value);
+      given.most_seconds = number<long>(name, value);
     else
       throw std::invalid_argument("no option " + name);
   }
@@ -79,10 +80,17 @@ void tell(const char* text) { [[maybe_unused]] const auto n = write(2, text, std
 
 /// A crash, an assertion of a library, or a scene without end.
 extern "C" void onSignal(int signal) {
-  tell(signal == SIGALRM ? "\nproperty: TIME: " : "\nproperty: CRASH: ");
+  tell(signal == SIGPROF ? "\nproperty: TIME: " : "\nproperty: CRASH: ");
   tell(current_scene);
   tell("\n");
   _exit(1);
+}
+
+/// Ends the program after so many seconds of its own processor time; 0: never.
+void limit(long seconds) {
+  itimerval timer{};
+  timer.it_value.tv_sec = seconds;
+  setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
 class Run {
@@ -124,9 +132,9 @@ class Run {
         fmt::format_to_n(current_scene, sizeof current_scene - 1, "--kind {} --seed {}: {}",
                          kind.name, seed, model.command(current_));
     *end.out = 0;
-    alarm(given_.most_seconds);
+    limit(given_.most_seconds);
     const Findings findings = check(model, current_);
-    alarm(0);
+    limit(0);
     ++scenes_;
     ++made_[kind.name];
     seconds_[kind.name] += std::chrono::duration<double>(Clock::now() - start).count();
@@ -200,7 +208,7 @@ class Run {
 
 int main(int count, char** values) try {
   using namespace radiosity::property;
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPROF}) {
     std::signal(signal, onSignal);
   }
   radiosity::setThreads(1);
