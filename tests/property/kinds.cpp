@@ -386,26 +386,32 @@ void column(std::vector<Loop>& faces, const Vec2& at, double radius, double z1, 
   faces.push_back(std::move(top));
 }
 
-/// A row of columns on a floor before a wall.
+/// Rows of columns on a floor, before a wall or under a roof that they carry.
 void colonnade(Model& model, Draw& draw) {
-  const int count = draw.integer(3, 8);
+  const int count = draw.integer(2, 6);
+  const int rows = draw.integer(1, 2);
   const double wide = draw.uniform(1, 3);
   const double high = draw.uniform(0.5, 1.5);
   Part floor = part(draw, "floor");
-  floor.faces = {level(-0.7, -1, wide, 1, 0)};
+  floor.faces = {level(-0.3, -1, wide + 0.3, 1, 0)};
   Part wall = part(draw, "wall", 1);
-  wall.faces = {parallelogram({-0.7, 1, 0}, {wide + 0.7, 0, 0}, {0, 0, high})};
+  if (draw.chance(0.5)) {
+    wall.faces = {level(-0.3, -1, wide + 0.3, 1, high, false)};
+  } else {
+    wall.faces = {parallelogram({-0.3, 1, 0}, {wide + 0.6, 0, 0}, {0, 0, high})};
+  }
   Part columns = part(draw, "columns");
-  const int sides = draw.integer(3, 8);
-  const double radius = draw.uniform(0.03, 0.3) * wide / count;
+  const int sides = draw.integer(3, 24);
+  const double radius = draw.uniform(0.05, 0.25) * wide / count;
   const double angle = draw.uniform(0, 1);
-  for (int k = 0; k < count; ++k) {
-    column(columns.faces, {wide * (k + 0.5) / count - 0.3, draw.uniform(-0.02, 0.02)}, radius,
-           0.9 * high, sides, angle);
+  for (int k = 0; k < count * rows; ++k) {
+    const double x = wide * (k % count + 0.5) / count;
+    const double y = k < count ? draw.uniform(-0.02, 0.02) : 0.5;
+    column(columns.faces, {x, y}, radius, draw.chance(0.7) ? high : 0.9 * high, sides, angle);
   }
   model.parts = {floor, wall, columns};
   model.known.closed = false;
-  model.patches = std::size_t(draw.integer(60, 250));
+  model.patches = std::size_t(draw.integer(60, 300));
 }
 
 /// Slats between a floor and a wall.
