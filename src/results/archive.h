@@ -2,6 +2,8 @@
 // bytes.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -56,6 +58,10 @@ class FieldWriter {
   }
   void operator()(const char* name, const std::vector<std::string>& values) {
     sink_->strings(name, values);
+  }
+  /// A vector in which NaN stands for a missing number.
+  void gaps(const char* name, const std::vector<double>& values, const char* unit = "") {
+    (*this)(name, values, unit);
   }
   /// A vector of numbers, stored as rows of `columns`.
   template <class T>
@@ -154,6 +160,7 @@ class FieldReader {
     if constexpr (std::is_same_v<T, bool>) {
       Stored stored = 0;
       source_->attribute(name, numberOf<Stored>(), 1, &stored);
+      requireSwitches(name, std::span(&stored, 1));
       value = stored != 0;
     } else {
       source_->attribute(name, numberOf<Stored>(), Scalar<T>::kCount, &value);
@@ -172,15 +179,25 @@ class FieldReader {
   void operator()(const char* name, std::vector<std::string>& values) {
     values = source_->strings(name);
   }
+  /// A vector of numbers, all of them finite.
   template <class T>
   void rows(const char* name, std::vector<T>& values, std::size_t columns,
             const char* /*unit*/ = "") {
+    readRows(name, values, columns);
     using Component = typename Element<T>::Scalar;
-    std::size_t count = 0;
-    const Handle dataset = source_->open(name, numberOf<Component>(), columns, count);
-    const std::size_t numbers = columns == 0 ? count : count * columns;
-    values.resize(numbers / kNumbersIn<T>);
-    if (!values.empty()) source_->readAll(name, dataset, numberOf<Component>(), values.data());
+    if constexpr (std::is_floating_point_v<Component>) {
+      const auto* numbers = reinterpret_cast<const Component*>(values.data());
+      for (std::size_t k = 0; k < values.size() * kNumbersIn<T>; ++k) {
+        if (std::isfinite(numbers[k])) continue;
+        source_->failAt(name, k / std::max<std::size_t>(columns, 1), double(numbers[k]));
+      }
+    }
+  }
+  void gaps(const char* name, std::vector<double>& values, const char* /*unit*/ = "") {
+    readRows(name, values, 0);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (std::isinf(values[k])) source_->failAt(name, k, values[k]);
+    }
   }
   /// The number of columns of a dataset.
   int columns(const char* name) const { return source_->columns(name); }
@@ -215,6 +232,10 @@ class FieldReader {
     if (source_->has(name)) value.emplace();
     return value.has_value();
   }
+  /// "NAME WHAT; make the file again".
+  [[noreturn]] void fail(const char* name, const std::string& what) const {
+    source_->fail(name, what);
+  }
   template <class Body>
   void group(const char* name, const Body& body) {
     const InputGroup inner_source = source_->group(name);
@@ -240,6 +261,7 @@ class FieldReader {
       std::vector<Stored> column;
       (*reader)(name, column);
       fit(name, column.size());
+      if constexpr (std::is_same_v<T, bool>) reader->requireSwitches(name, column);
       for (std::size_t k = 0; k < column.size(); ++k) {
         if constexpr (std::is_same_v<T, bool>) {
           (*records)[k].*member = column[k] != 0;
@@ -265,6 +287,20 @@ class FieldReader {
   };
 
  private:
+  template <class T>
+  void readRows(const char* name, std::vector<T>& values, std::size_t columns) const {
+    using Component = typename Element<T>::Scalar;
+    std::size_t count = 0;
+    const Handle dataset = source_->open(name, numberOf<Component>(), columns, count);
+    const std::size_t numbers = columns == 0 ? count : count * columns;
+    values.resize(numbers / kNumbersIn<T>);
+    if (!values.empty()) source_->readAll(name, dataset, numberOf<Component>(), values.data());
+  }
+  void requireSwitches(const char* name, std::span<const std::uint8_t> values) const {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (values[k] > 1) source_->failAt(name, k, values[k]);
+    }
+  }
   template <class Enum, std::size_t N>
   Enum parse(const char* name, const std::string& word, const NameTable<Enum, N>& names) const {
     if (const std::optional<Enum> value = named(names, word)) return *value;

@@ -363,7 +363,7 @@ void describe(Archive& a, Described<Archive, HeatSolution>& h) {
   a.rows("irradiance", h.irradiance, bands, "W/m^2");
   a("net_flux", h.net_flux, "W/m^2");
   a("convection", h.convection, "W/m^2");
-  a("temperature", h.temperature, "K");
+  a.gaps("temperature", h.temperature, "K");
   a.group("summary", [&](auto& summary) { describe(summary, h.summary); });
   a.laterText("condition_table", h.conditions.table);
   a.later("condition_settings", h.conditions.settings);
@@ -408,19 +408,26 @@ struct PassColumns {
       append(in_flight, pass.in_flight);
     }
   }
-  /// The list ends with the shortest column; results_check.cpp refuses unequal ones.
+  /// The first column that is not as long as `seconds`; null: all are.
+  const char* unequal() const {
+    if (change.size() != seconds.size()) return "change";
+    if (bound.size() != seconds.size()) return "bound";
+    const std::pair<const char*, const std::vector<double>*> columns[] = {
+        {"emitted", &emitted},    {"from_sky", &from_sky}, {"absorbed", &absorbed},
+        {"to_sky", &to_sky},      {"on_backs", &on_backs}, {"imbalance", &imbalance},
+        {"in_flight", &in_flight}};
+    for (const auto& [name, column] : columns) {
+      if (column->size() != bands * seconds.size()) return name;
+    }
+    return nullptr;
+  }
   std::vector<GatherPass> passes() const {
     const auto bandsOf = [&](const std::vector<double>& from, std::size_t pass) {
       const auto first = from.begin() + std::ptrdiff_t(bands * pass);
       return std::vector<double>(first, first + std::ptrdiff_t(bands));
     };
-    std::size_t count = std::min({seconds.size(), change.size(), bound.size()});
-    for (const auto* column :
-         {&emitted, &from_sky, &absorbed, &to_sky, &on_backs, &imbalance, &in_flight}) {
-      count = std::min(count, column->size() / bands);
-    }
-    std::vector<GatherPass> result(count);
-    for (std::size_t k = 0; k < count; ++k) {
+    std::vector<GatherPass> result(seconds.size());
+    for (std::size_t k = 0; k < result.size(); ++k) {
       GatherPass& pass = result[k];
       pass.seconds = seconds[k];
       pass.change = change[k];
@@ -437,7 +444,7 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, PassColumns>& p) {
   a("seconds", p.seconds, "s");
   a("change", p.change);
-  a("bound", p.bound, "W/m^2");
+  a.gaps("bound", p.bound, "W/m^2");
   a.rows("emitted", p.emitted, p.bands, "W");
   a.rows("from_sky", p.from_sky, p.bands, "W");
   a.rows("absorbed", p.absorbed, p.bands, "W");
@@ -462,6 +469,9 @@ void describe(Archive& a, Described<Archive, GatherSummary>& s, std::size_t band
     if constexpr (Archive::kReading) {
       PassColumns columns(bands);
       describe(passes, columns);
+      if (const char* column = columns.unequal()) {
+        passes.fail(column, "is not as long as its table");
+      }
       s.passes = columns.passes();
     } else {
       const PassColumns columns(s.passes, bands);

@@ -16,10 +16,15 @@ class InputFile {
   explicit InputFile(const std::string& path);
   hid_t id() const { return file_.get(); }
   const std::string& path() const { return path_; }
+  /// The length of the file.
+  std::size_t bytes() const;
   /// "FILE: OBJECT WHAT; make the file again".
   [[noreturn]] void fail(const std::string& object, const std::string& what) const;
   /// The same, with HDF5's own reason.
   [[noreturn]] void failDamaged(const std::string& object) const;
+  /// Refuses a file with objects that are not as we write them (h5_contents.h). To be called before
+  /// anything but attributes of the root is read.
+  void requireOwnObjects() const;
 
  private:
   mutable Silence silence_;  // first: outlives the handle
@@ -70,6 +75,8 @@ class InputGroup {
   [[noreturn]] void fail(const std::string& name, const std::string& what) const {
     file_->fail(pathOf(name), what);
   }
+  /// "holds VALUE at ROW", of a dataset.
+  [[noreturn]] void failAt(const std::string& name, std::size_t row, double value) const;
 
  private:
   InputGroup(const InputFile& file, Handle id, std::string path);

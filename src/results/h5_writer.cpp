@@ -6,6 +6,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "results/h5_contents.h"
+
 namespace radiosity::h5 {
 
 namespace {
@@ -84,7 +86,8 @@ std::unique_ptr<OutputFile> OutputFile::extend(const std::string& path) {
   file->shown_ = path;
   const Handle access = accessTo(file->disk_);
   file->file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.get()), H5Fclose);
-  return file->file_ ? std::move(file) : nullptr;
+  if (!file->file_ || foreignObject(file->id())) return nullptr;
+  return file;
 }
 
 bool OutputFile::closeExtended() {

@@ -262,6 +262,7 @@ ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMe
 ExchangeMatrix readMatrixPart(const std::string& path, const MatrixPart& part) {
   return h5::readSettled(path, [&] {
     const h5::InputFile file(path);
+    file.requireOwnObjects();
     return readMatrix(h5::InputGroup(file).group("form_factors"), nullptr, part);
   });
 }

@@ -170,6 +170,7 @@ void checkHead(const h5::InputFile& file, const InputGroup& root) {
         "{}: has format version {}, this program reads {}; make the file again with this program",
         file.path(), version, kFormatVersion));
   }
+  file.requireOwnObjects();
 }
 
 FormFactors readFactors(const InputGroup& group, bool with_matrix,
@@ -196,8 +197,9 @@ std::optional<Scene> readScene(const InputGroup& root) {
   return scene;
 }
 
-void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<ScratchMemory> scratch,
-                Results& results) {
+/// Returns the hash of the mesh that the file names; empty without a mesh.
+std::string readStages(const InputGroup& root, bool with_factors,
+                       std::shared_ptr<ScratchMemory> scratch, Results& results) {
   results.version = root.text("version");
   results.scene = readScene(root);
   std::string mesh_hash;
@@ -250,6 +252,7 @@ void readStages(const InputGroup& root, bool with_factors, std::shared_ptr<Scrat
     FieldReader fields(group);
     describe(fields, results.basis.emplace());
   }
+  return mesh_hash;
 }
 
 std::optional<Scene> sceneAtOnce(const std::string& path) {
@@ -265,12 +268,16 @@ Results readAtOnce(const std::string& path, bool with_factors,
   const InputGroup root(file);
   checkHead(file, root);
   Results results;
+  std::string mesh_hash;
   try {
-    readStages(root, with_factors, std::move(scratch), results);
+    mesh_hash = readStages(root, with_factors, std::move(scratch), results);
   } catch (const std::bad_alloc&) {
     throw RunError(fmt::format("{}: does not fit into memory; use a larger machine", path));
   }
   checkResults(path, results);
+  if (results.mesh && geometryHash(results.mesh->mesh) != mesh_hash) {
+    file.fail("/mesh/geometry_hash", "is not that of /mesh: another program changed the patches");
+  }
   if (results.mesh && results.mesh->mesh.clusters) {
     std::optional<PatchClusters>& clusters = results.mesh->mesh.clusters;
     clusters = clustersOf(std::move(clusters->of_patch), unknownsOf(results.mesh->mesh));

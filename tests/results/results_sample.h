@@ -90,7 +90,7 @@ inline PatchMesh mesh(Index side) {
   p.normal = {{0, 0, 1}, {0, 1, 0}};
   p.origin = {{0, 0, 0}, {0.5, 0.25, 0.125}};
   p.surface = {0, 1};
-  p.index_in_surface = {3, 4};
+  p.index_in_surface = {1, 0};
   p.back_is_patch = {1, 0};
   return m;
 }
