@@ -7,9 +7,17 @@
 
 namespace radiosity {
 
-/// A temporary name beside `path` with the same extension. commit() renames it to `path`; without
-/// commit() the destructor removes it. Errors: InputError if the folder does not exist or cannot
-/// be written, RunError if the rename fails.
+/// The file that a name stands for: behind links, also where it does not exist yet. Outputs are
+/// written there, and links stay. A link that leads to itself is returned as it is.
+std::string fileBehindLinks(const std::string& path);
+
+/// An empty temporary file beside the file that `path` stands for, with the same extension.
+/// commit() renames it to that file, with the permissions of a file that it replaces; without
+/// commit() the destructor removes it. A file that a killed run left beside the same output is
+/// removed first. On the temporary file of another AtomicFile of this process it is that file: a
+/// writer that makes its own need not know. Errors: InputError if the folder does not exist or
+/// cannot be written, if the name is too long, or if it stands for no file; RunError if the rename
+/// fails.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -20,8 +28,12 @@ class AtomicFile {
   void commit();
 
  private:
-  std::string path_;
+  void create(const std::string& folder, const std::string& name);
+
+  std::string path_;    ///< as given
+  std::string target_;  ///< behind links; empty: within another AtomicFile
   std::string temporary_;
+  int lock_ = -1;  ///< holds a lock on the temporary file as long as this process lives
 };
 
 /// The number of files that this process has committed.

@@ -1,9 +1,13 @@
 // radiosity: parses the arguments, runs one subcommand, reports, and returns the exit code (0 done,
 // 1 the run failed or did not converge, 2 bad input or arguments).
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
@@ -68,6 +72,24 @@ int fail(const std::string& message, int code) {
   return code;
 }
 
+/// Opens the standard files that the caller closed: else the first output would take their numbers,
+/// and lines meant for a person would go into it. Writing to a closed standard output still fails.
+void openStandardFiles() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(number, F_GETFD) >= 0) continue;
+    if (open("/dev/null", number == STDERR_FILENO ? O_WRONLY : O_RDONLY) != number) std::abort();
+  }
+}
+
+/// The exit code of a run, or 1 if lines of its standard output were lost, as on a full disk. A
+/// reader that closed its pipe wanted no more.
+int judgeOutput(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  if (poll(&out, 1, 0) > 0 && (out.revents & POLLERR) != 0) return code;
+  return fail("standard output cannot be written; is its disk full?", code == 0 ? 1 : code);
+}
+
 /// Parses the arguments and runs the command; all errors end here.
 int runProgram(int argc, char** argv, Processes* processes) {
   try {
@@ -95,7 +117,7 @@ int runProgram(int argc, char** argv, Processes* processes) {
 
 /// Runs the command in process 0 of several; then all end.
 int runFirst(int argc, char** argv, Processes& processes) {
-  const int code = runProgram(argc, argv, &processes);
+  const int code = judgeOutput(runProgram(argc, argv, &processes));
   if (processes.halfDone()) processes.abort(code);
   SharedTask end = SharedTask::end;
   processes.broadcastValue(end);
@@ -132,8 +154,9 @@ int runOther(int argc, char** argv, Processes& processes) {
 int main(int argc, char** argv) {
   using namespace radiosity;
   using namespace radiosity::cli;
+  openStandardFiles();
   ignoreSignalsOfWriting();
-  if (!startedByMpi()) return runProgram(argc, argv, nullptr);
+  if (!startedByMpi()) return judgeOutput(runProgram(argc, argv, nullptr));
   try {
     Processes& processes = joinProcesses();
     return processes.rank() == 0 ? runFirst(argc, argv, processes)

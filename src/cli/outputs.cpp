@@ -68,8 +68,10 @@ Format formatOf(const std::string& path, Command command) {
 
 bool sameFile(const std::string& a, const std::string& b) {
   std::error_code ignored;
-  return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal() ||
-         fs::equivalent(a, b, ignored);
+  const auto place = [&](const std::string& path) {
+    return fs::weakly_canonical(fs::absolute(fileBehindLinks(path)), ignored);
+  };
+  return place(a) == place(b) || fs::equivalent(a, b, ignored);
 }
 
 /// The map of --lightmap. It must have floats: 8 bits are not enough for W/m^2.
@@ -115,6 +117,19 @@ void requireNoInput(const std::string& path, const Request& request, bool result
   }
 }
 
+/// The report is written last, over any other file of its name.
+void requireOwnReport(const Request& request, const std::vector<Output>& outputs) {
+  if (request.report.empty()) return;
+  requireNoInput(request.report, request, false);
+  for (const Output& output : outputs) {
+    if (!sameFile(request.report, output.path)) continue;
+    throw InputError(
+        fmt::format("{}: is {}, an output, and the file of --report; write to another "
+                    "name",
+                    request.report, output.path));
+  }
+}
+
 }  // namespace
 
 std::vector<Output> parseOutputs(const Request& request) {
@@ -141,7 +156,7 @@ std::vector<Output> parseOutputs(const Request& request) {
     }
     outputs.push_back(output);
   }
-  if (!request.report.empty()) requireNoInput(request.report, request, false);
+  requireOwnReport(request, outputs);
   return outputs;
 }
 
@@ -217,7 +232,7 @@ void OutputSet::commit(Report& report, const Progress& progress) {
 
 void requireDiskSpace(const std::string& path, std::size_t bytes) {
   std::error_code error;
-  const fs::space_info space = fs::space(fs::absolute(path).parent_path(), error);
+  const fs::space_info space = fs::space(fs::absolute(fileBehindLinks(path)).parent_path(), error);
   if (!error && space.available < bytes) {
     throw RunError(
         fmt::format("{}: needs about {} on disk, {} are free; free some or write elsewhere", path,

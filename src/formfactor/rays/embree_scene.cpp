@@ -30,8 +30,11 @@ void refuseBacks(const RTCFilterFunctionNArguments* hit) {
 
 RTCDevice newDevice() {
   const RTCDevice device = rtcNewDevice(nullptr);
-  if (device == nullptr) throw RunError("rays: Embree cannot be started on this processor");
-  return device;
+  if (device != nullptr) return device;
+  if (rtcGetDeviceError(nullptr) == RTC_ERROR_UNSUPPORTED_CPU) {
+    throw RunError("rays: Embree cannot be started on this processor");
+  }
+  throw RunError("rays: Embree cannot be started: too little memory, or too few threads, are left");
 }
 
 }  // namespace
