@@ -172,7 +172,14 @@ std::optional<UnlitView> unlitView(const PatchMesh& mesh, const SurfaceLight& li
 /// Exposure value: the picture is multiplied by 2^ev before the sRGB curve. Automatic: the 99th
 /// percentile of luminance over hit pixels maps to 0.8 (emitters clip), unless the median over the
 /// lit ones would fall below 0.1: a large lamp in view then clips too. 0 if nothing is lit.
-double autoExposure(const Image& image);
+/// `lamps`: width * height as lampPixels() finds them, or empty; these pixels do not count unless
+/// nothing else is lit: the light of a room is that of what its lamps shine on.
+double autoExposure(const Image& image, std::span<const std::uint8_t> lamps = {});
+
+/// width * height, 1: the pixel's middle shows a patch that sends out more light of its own than it
+/// reflects. Errors: as render().
+std::vector<std::uint8_t> lampPixels(const PatchMesh& mesh, const SurfaceLight& light,
+                                     const Camera& camera, const RenderOptions& options);
 
 /// Multiplies by 2^ev; colours only.
 Image exposed(const Image& image, double ev);

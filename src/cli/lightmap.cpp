@@ -26,21 +26,36 @@ void requireMemory(const Request& request, const LightmapOptions& options) {
                   options.size, bytesText(options.bytes()), bytesText(limit)));
 }
 
-/// The file whose mesh is kept; empty if there is none.
-std::string meshSource(const std::string& input) {
-  const std::string extension = lowerExtension(input);
-  return extension == ".gltf" || extension == ".glb" ? input : std::string();
+bool isGltf(const std::string& path) {
+  const std::string extension = lowerExtension(path);
+  return extension == ".gltf" || extension == ".glb";
 }
 
-/// Notes properties of the scene's file that the mesh lacks.
-void noteLoss(Session& session, const Scene& scene, const std::string& mesh) {
-  std::vector<Note> notes;
+/// The glTF file whose mesh is kept; empty if there is none. For a results file it is the file that
+/// the scene was read from, where it still is: as it was named then, or beside the results.
+std::string meshSource(const std::string& input, const Scene& scene) {
+  namespace fs = std::filesystem;
+  if (!isResultsFile(input)) return isGltf(input) ? input : std::string();
+  if (!isGltf(scene.file)) return {};
+  const fs::path beside = fs::path(input).parent_path() / fs::path(scene.file).filename();
+  for (const fs::path& place : {fs::path(scene.file), beside}) {
+    std::error_code ignored;
+    if (fs::is_regular_file(place, ignored)) return place.string();
+  }
+  return {};
+}
+
+/// Notes what the scene's file has and a mesh of flat faces lacks. `why`: the file cannot be used;
+/// or empty.
+void noteLoss(Session& session, const Scene& scene, const std::string& mesh,
+              const std::string& why) {
   const std::string& input = session.request.input;
-  if (isResultsFile(input)) {
-    notes.push_back(
-        {Severity::info, fmt::format("{}: flat faces with base colours, as {} has them; for a glTF "
-                                     "file's own mesh give that file, with -o {}",
-                                     mesh, input, input)});
+  std::vector<Note> notes;
+  if (isResultsFile(input) && isGltf(scene.file)) {
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: flat faces with base colours, without the textures, normals "
+                                 "and cameras of {}, which {}; put it beside {}",
+                                 mesh, scene.file, why.empty() ? "is not there" : why, input)});
   } else if (!scene.textures.empty()) {
     notes.push_back({Severity::warning,
                      fmt::format("{}: has base colours and no textures; those of a glTF file are "
@@ -105,13 +120,22 @@ void writeLightmap(Session& session, const Scene& scene, const PatchMesh& mesh,
                              {"unit", "W/m^2"},
                              {"exposure_ev", fmt::format("{}", ev)}}});
               });
-  const LightmapFile file{std::filesystem::path(request.lightmap).filename().string(), ev,
-                          meshSource(request.input)};
+  LightmapFile file{std::filesystem::path(request.lightmap).filename().string(), ev,
+                    meshSource(request.input, scene)};
   int set = 0;
-  files.write(
-      Format::glb, "mesh with the lightmap's coordinates",
-      [&](const std::string& temporary) { set = writeLightmapGlb(temporary, scene, map, file); });
-  if (file.source.empty()) noteLoss(session, scene, files.path(Format::glb));
+  std::string why;
+  files.write(Format::glb, "mesh with the lightmap's coordinates",
+              [&](const std::string& temporary) {
+                try {
+                  set = writeLightmapGlb(temporary, scene, map, file);
+                } catch (const InputError& error) {
+                  if (file.source.empty() || !isResultsFile(request.input)) throw;
+                  why = fmt::format("cannot be used ({})", error.what());
+                  file.source.clear();
+                  set = writeLightmapGlb(temporary, scene, map, file);
+                }
+              });
+  if (file.source.empty()) noteLoss(session, scene, files.path(Format::glb), why);
   summarize(session.report, map, set);
 }
 

@@ -153,7 +153,7 @@ void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& l
 
 double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                   const Image& radiance, const Picture& picture, OutputSet& files) {
-  const double ev = exposureOf(session.request, radiance);
+  const double ev = exposureOf(session.request, mesh, light, radiance, picture);
   if (session.request.exposure == "auto") warnOfDarkness(session.report, mesh, light, radiance);
   session.report.number("exposure_ev", "exposure", ev,
                         session.request.exposure == "auto" ? "EV (automatic)" : "EV");
@@ -178,13 +178,15 @@ ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const Surface
   framePicture(picture, mesh, pipeline.factors().report.closed, light.reflected);
   const Image radiance =
       renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
-  const double ev = exposureOf(session.request, radiance);
+  const double ev = exposureOf(session.request, mesh, light, radiance, picture);
   return {std::move(picture), ev};
 }
 
-double exposureOf(const Request& request, const Image& radiance) {
+double exposureOf(const Request& request, const PatchMesh& mesh, const SurfaceLight& light,
+                  const Image& radiance, const Picture& picture) {
   const std::optional<double> ev = request.exposureStops();
-  return ev ? *ev : autoExposure(radiance);
+  if (ev) return *ev;
+  return autoExposure(radiance, lampPixels(mesh, light, picture.camera, picture.options));
 }
 
 }  // namespace radiosity::cli

@@ -54,7 +54,8 @@ struct ExposedPicture {
 /// Draws that picture to find its EV.
 ExposedPicture exposePicture(Session& session, Pipeline& pipeline, const SurfaceLight& light);
 
-/// The EV of --exposure: the number, or the automatic one of the picture.
-double exposureOf(const Request& request, const Image& radiance);
+/// The EV of --exposure: the number, or the automatic one of the picture of that light.
+double exposureOf(const Request& request, const PatchMesh& mesh, const SurfaceLight& light,
+                  const Image& radiance, const Picture& picture);
 
 }  // namespace radiosity::cli

@@ -2,11 +2,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "base/luminance.h"
+#include "base/parallel.h"
 #include "radiosity/render.h"
+#include "render/item_buffer.h"
 #include "render/percentile.h"
+#include "render/view.h"
 
 namespace radiosity {
 
@@ -26,20 +30,64 @@ double brightest(const Image& image) {
 
 }  // namespace
 
-double autoExposure(const Image& image) {
+namespace {
+
+/// The luminance of hit pixels that show no lamp.
+std::vector<double> metered(const Image& image, std::span<const std::uint8_t> lamps) {
   std::vector<double> luminance;
   for (std::size_t k = 0; k + 3 < image.rgba.size(); k += 4) {
     const float* p = image.rgba.data() + k;
-    if (p[3] > 0) luminance.push_back(luminanceOf(Vec3(p[0], p[1], p[2])));
+    const bool lamp = !lamps.empty() && lamps[k / 4] != 0;
+    if (p[3] > 0 && !lamp) luminance.push_back(luminanceOf(Vec3(p[0], p[1], p[2])));
   }
-  if (luminance.empty()) return 0;
+  return luminance;
+}
+
+/// The exposure for these pixels, which are reordered; none if they are dark.
+std::optional<double> exposureFor(std::vector<double>& luminance) {
+  if (luminance.empty()) return std::nullopt;
   const double bright = percentile(luminance, 0.99);
-  if (!(bright > 0)) return 0;
-  // A lamp that fills more than 1% of the picture would set the exposure alone and leave the room
-  // black. So the median of the lit pixels stays at a tenth of the range or above.
+  if (!(bright > 0)) return std::nullopt;
+  // A window that fills more than 1% of the picture would set the exposure alone and leave the
+  // room black. So the median of the lit pixels stays at a tenth of the range or above.
   std::erase_if(luminance, [](double value) { return !(value > 0); });
   const double middle = percentile(luminance, 0.5);
   return std::log2(0.8 / std::min(bright, 8 * middle));
+}
+
+}  // namespace
+
+double autoExposure(const Image& image, std::span<const std::uint8_t> lamps) {
+  std::vector<double> lit = metered(image, lamps);
+  if (const std::optional<double> ev = exposureFor(lit)) return *ev;
+  std::vector<double> all = metered(image, {});
+  return exposureFor(all).value_or(0);
+}
+
+std::vector<std::uint8_t> lampPixels(const PatchMesh& mesh, const SurfaceLight& light,
+                                     const Camera& camera, const RenderOptions& options) {
+  options.validate();
+  std::vector<std::uint8_t> lamp(mesh.size());
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const double* b = light.patches.data() + 3 * i;
+    lamp[i] = luminanceOf(Vec3(b[0], b[1], b[2])) > 2 * light.reflected[i];
+  }
+  const ItemBuffer items(mesh, makeView(camera, options.width, options.height), 1,
+                         options.show_backs);
+  std::vector<std::uint8_t> pixels(std::size_t(options.width) * std::size_t(options.height));
+  parallelFor(std::size_t(items.tileCount()), 1, [&](std::size_t tile) {
+    thread_local TileItems seen;
+    items.resolve(int(tile), seen);
+    for (int y = seen.y; y < seen.y + seen.height; ++y) {
+      for (int x = seen.x; x < seen.x + seen.width; ++x) {
+        const Index piece = seen.piece[seen.at(x, y, 0)];
+        if (piece == kNone || items.seenFromBehind(piece)) continue;
+        pixels[std::size_t(y) * std::size_t(options.width) + std::size_t(x)] =
+            lamp[items.patchOf(piece)];
+      }
+    }
+  });
+  return pixels;
 }
 
 std::optional<UnlitView> unlitView(const PatchMesh& mesh, const SurfaceLight& light,

@@ -36,6 +36,9 @@ constexpr double kRoom = 1.5;       // worth of being in a room that has an outs
 /// scene's diagonal, these are framed.
 constexpr double kDark = 0.05;
 constexpr double kCrowded = 0.1;
+/// If what stands in the scene covers less of the best picture than this, a few dots, the
+/// neighbourhood of the largest patch is framed: six houses in a plain of ten kilometres.
+constexpr double kEmpty = 0.01;
 
 /// Turn vectors about the x axis so that the scene's z becomes y, and back.
 Vec3 turnedUp(const Vec3& v) { return {v.x, v.z, -v.y}; }
@@ -136,6 +139,23 @@ struct LitMesh {
   }
 };
 
+/// The areas of patches in the neighbourhood of the largest lit one, 0 for those farther away.
+std::vector<double> areasAroundLargest(const LitMesh& scene) {
+  const PatchMesh& mesh = scene.mesh;
+  std::size_t largest = 0;
+  for (std::size_t i = 1; i < mesh.size(); ++i) {
+    const auto worth = [&](std::size_t k) { return mesh.area[k] * scene.brightness[k]; };
+    if (worth(i) > worth(largest)) largest = i;
+  }
+  constexpr double kSizes = 10;
+  const double reach = kSizes * std::sqrt(mesh.area[largest]);
+  std::vector<double> areas(mesh.area.begin(), mesh.area.end());
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    if (glm::distance(mesh.centroid[i], mesh.centroid[largest]) > reach) areas[i] = 0;
+  }
+  return areas;
+}
+
 /// The view from one point: shares of the picture and of the scene, 0 to 1.
 struct Glimpse {
   double fronts = 0;  ///< of the picture
@@ -188,8 +208,10 @@ struct Trial {
 /// (d.z = 1); f is the focal length in pixels. The visible area of a patch is at most its area.
 Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double diagonal) {
   const PatchMesh& mesh = scene.mesh;
-  const int width = std::max(8, int(std::lround(std::sqrt(kTrialPixels * aspect))));
-  const int height = std::max(8, int(std::lround(std::sqrt(kTrialPixels / aspect))));
+  // Even, so that no row or column of pixels is in the middle, where a flat scene, seen from the
+  // side, would fill it alone and be taken for all of the picture.
+  const int width = std::max(8, 2 * int(std::lround(std::sqrt(kTrialPixels * aspect) / 2)));
+  const int height = std::max(8, 2 * int(std::lround(std::sqrt(kTrialPixels / aspect) / 2)));
   const Trial trial(scene.rays, camera, width, height);
   const View& view = trial.view;
   std::vector<double> seen(mesh.size(), 0.0);
@@ -442,9 +464,14 @@ Camera framingCamera(const PatchMesh& mesh, bool closed, double aspect,
   if (!(box.diagonal() < std::numeric_limits<double>::infinity())) return {};  // empty
   LitMesh scene(mesh, light);
   Camera camera = bestCamera(scene, box, closed, aspect);
-  if (look(scene, camera, aspect, box.diagonal()).lit >= kDark) return camera;
+  const Glimpse glimpse = look(scene, camera, aspect, box.diagonal());
+  const bool empty = glimpse.fronts < kEmpty;
+  if (!empty && glimpse.lit >= kDark) return camera;
   scene.area = framedAreas(mesh);
-  if (scene.area == mesh.area) return camera;
+  if (scene.area == mesh.area) {
+    if (!empty) return camera;
+    scene.area = areasAroundLargest(scene);
+  }
   return bestCamera(scene, boundingBox(mesh, scene.area), closed, aspect);
 }
 

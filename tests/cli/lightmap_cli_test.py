@@ -1,10 +1,20 @@
 """--lightmap on the command line: files, report and refusals."""
 
+import json
+import shutil
+import struct
 import unittest
 
 from cli_runner import DATA, SMALL, CliTest
 
 MAP = ["--lightmap", "map.exr", "--lightmap-size", "64"]
+
+
+def glb_document(path):
+    """The JSON of a binary glTF file."""
+    content = path.read_bytes()
+    (length,) = struct.unpack_from("<I", content, 12)
+    return json.loads(content[20:20 + length])
 
 
 class LightmapCli(CliTest):
@@ -20,9 +30,32 @@ class LightmapCli(CliTest):
         self.run_program("solve", "box.obj", *SMALL, "-o", "box.h5")
         run = self.run_program("render", "box.h5", *MAP, "-o", "p.png", "-o", "baked.glb", "--width",
                                "32", "--lightmap-shows", "radiosity")
-        self.assertIn("for a glTF file's own mesh give that file, with -o box.h5", run.out + run.err)
         self.assertIn("lightmap, radiosity, W/m^2", run.out)
         self.assertTrue((self.folder / "p.png").exists())
+
+    def test_a_results_file_keeps_what_the_scenes_own_file_has(self):
+        shutil.copy(DATA / "blender-room.glb", self.folder / "room.glb")
+        self.run_program("solve", "room.glb", *SMALL, "-o", "room.h5")
+        self.run_program("render", "room.glb", *SMALL, *MAP, "-o", "scene.glb")
+        self.run_program("render", "room.h5", *MAP, "-o", "results.glb")
+        scene, results = (glb_document(self.folder / name) for name in ("scene.glb", "results.glb"))
+        for part in ("nodes", "materials", "cameras"):
+            self.assertEqual(results.get(part), scene.get(part), part)
+        attributes = results["meshes"][0]["primitives"][0]["attributes"]
+        self.assertIn("NORMAL", attributes)
+        self.assertIn("TEXCOORD_1", attributes)
+
+    def test_a_results_file_says_what_is_lost_without_the_scenes_own_file(self):
+        shutil.copy(DATA / "blender-room.glb", self.folder / "room.glb")
+        self.run_program("solve", "room.glb", *SMALL, "-o", "room.h5")
+        (self.folder / "room.glb").unlink()
+        run = self.run_program("render", "room.h5", *MAP, "-o", "results.glb")
+        self.assertIn("without the textures, normals and cameras of room.glb, which is not there", run.err)
+        # Another scene under the same name is not taken for it.
+        shutil.copy(self.folder / "results.glb", self.folder / "room.glb")
+        run = self.run_program("render", "room.h5", *MAP, "-o", "other.glb")
+        self.assertIn("room.glb, which cannot be used", run.err)
+        self.assertTrue((self.folder / "other.glb").exists())
 
     def test_impossible_lightmaps_are_refused_before_any_work(self):
         solve = ["solve", "box.obj", *SMALL]

@@ -287,6 +287,22 @@ TEST(FramingCamera, AnObjectFarAwayIsLeftOutIfNothingLitWouldBeSeen) {
   EXPECT_LT(glm::distance(near.target, Vec3(2.5, 2.5, 0.5)), 5);
 }
 
+/// Houses of 20 m in a plain of 9 km: a picture of all of them would show dots.
+TEST(FramingCamera, OfHousesFarApartTheLargestIsFramed) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> place(0, 9000);
+  for (const int houses : {2, 6, 40}) {
+    MeshBuilder builder;
+    for (int k = 0; k < houses; ++k) {
+      const Vec3 low(place(random), 0, place(random));
+      const double size = k == 1 ? 30 : 20;
+      builder.box("houses", low, low + Vec3(size, 10, size), 1, false, false);
+    }
+    const PatchMesh mesh = builder.build();
+    EXPECT_GT(fronts(mesh, framingCamera(mesh, false, 1.5)), 0.02) << houses;
+  }
+}
+
 TEST(FramingCamera, NeedsALightValueForEachPatch) {
   const PatchMesh mesh = room({1, 1, 1}, false);
   EXPECT_THROW(framingCamera(mesh, true, 1, std::vector<double>(3, 1.0)), InputError);
@@ -320,6 +336,39 @@ TEST(Exposure, ALampThatFillsAFifthOfThePictureDoesNotBlackenTheRoom) {
   }
   // The median of the lit pixels, 2, goes to a tenth.
   EXPECT_NEAR(autoExposure(image), std::log2(0.1 / 2), 1e-6);
+}
+
+/// What the lamps shine on is metered, the same with and without a lamp in view.
+TEST(Exposure, LampsInViewDoNotCount) {
+  Image image{10, 10, {}};
+  std::vector<std::uint8_t> lamps;
+  for (int k = 0; k < 100; ++k) {
+    lamps.push_back(k < 20 ? 1 : 0);
+    const float value = k < 20 ? 1000.0f : 2.0f;
+    image.rgba.insert(image.rgba.end(), {value, value, value, 1.0f});
+  }
+  EXPECT_NEAR(autoExposure(image, lamps), std::log2(0.8 / 2), 1e-6);
+  // If there is nothing but the lamp, it is metered.
+  EXPECT_NEAR(autoExposure(image, std::vector<std::uint8_t>(100, 1)), autoExposure(image), 0);
+}
+
+TEST(Exposure, ALampIsWhatSendsOutMoreThanItReflects) {
+  MeshBuilder builder;
+  builder.grid("wall", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  builder.grid("lamp", {1, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  builder.grid("glow", {2, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const PatchMesh mesh = builder.build();
+  SurfaceLight light;
+  light.patches = {1, 1, 1, 9, 9, 9, 1, 1, 1};  // B
+  light.reflected = {1, 2, 0.6};
+  RenderOptions options;
+  options.width = 6;
+  options.height = 2;
+  const Camera camera = parseCamera("eye=1.5,.5,1;target=1.5,.5,0;fov=53.13010235415598");
+  const std::vector<std::uint8_t> row{0, 0, 1, 1, 0, 0};
+  std::vector<std::uint8_t> expected = row;
+  expected.insert(expected.end(), row.begin(), row.end());
+  EXPECT_EQ(lampPixels(mesh, light, camera, options), expected);
 }
 
 TEST(Exposure, LuminanceIsRec709) {
