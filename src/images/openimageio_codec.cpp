@@ -133,6 +133,16 @@ class OpenImageIoCodec final : public ImageCodec {
                          hints);
   }
 
+  /// Whether encoded bytes can be read again. OpenEXR leaves out lines for which it finds no
+  /// memory, and says nothing.
+  static bool isWhole(const std::string& path, const ImageToEncode& image,
+                      const std::vector<unsigned char>& bytes) {
+    OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes.data()), bytes.size());
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, nullptr, &memory);
+    std::vector<float> samples(std::size_t(image.width) * std::size_t(image.height) * 4);
+    return input && input->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, samples.data());
+  }
+
   EncodedImage encode(const std::string& path, const ImageToEncode& image) const override {
     OIIO::ImageSpec spec(image.width, image.height, 4,
                          image.floating ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
@@ -148,9 +158,13 @@ class OpenImageIoCodec final : public ImageCodec {
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(path, &memory);
     if (!output) {
       file.problem = OIIO::geterror();
-    } else if (!output->open(path, spec) || !output->write_image(spec.format, image.pixels) ||
-               !output->close()) {
-      file.problem = output->geterror();
+      return file;
+    }
+    const bool written = output->open(path, spec) &&
+                         output->write_image(spec.format, image.pixels) && output->close();
+    file.problem = output->geterror();
+    if (file.problem.empty() && !(written && isWhole(path, image, file.bytes))) {
+      file.problem = "pixels were left out; is there too little memory?";
     }
     return file;
   }
