@@ -4,6 +4,7 @@
 // (PatchMesh::clusters), i and j are clusters.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -248,6 +249,16 @@ struct FormFactors {
   std::vector<double> error;
   FactorsFrom method = FactorsFrom::matrix;
   FormFactorReport report;
+
+  /// Whether no row sees a front: a room that faces outward, or a lone convex body.
+  bool seeNothing() const {
+    return !fronts.empty() &&
+           std::all_of(fronts.begin(), fronts.end(), [](double seen) { return seen == 0; });
+  }
+  /// What a result that is usable depends on; empty: nothing.
+  const char* condition() const {
+    return seeNothing() ? "only if no surface is meant to see another" : "";
+  }
 };
 
 /// The plan of a computation, made from a sample of rows before time and memory are spent.

@@ -123,12 +123,15 @@ struct SceneOptions {
   /// Of formats that do not say it: factors of the reflectance, or the reflectance itself of faces
   /// without a material.
   VertexColours vertex_colours = VertexColours::unused;
-  bool textures = true;                ///< false: the material's factor alone
-  double max_image = 100;              ///< largest texture, in millions of pixels; above 0
-  std::vector<std::string> set;        ///< "NAME.PROPERTY=VALUE", see applyOverrides()
-  std::string materials_file;          ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
-  std::vector<std::string> one_sided;  ///< material, object or surface names, or "all"
-  std::vector<std::string> two_sided;  ///< the same; one_sided is applied first
+  bool textures = true;          ///< false: the material's factor alone
+  double max_image = 100;        ///< largest texture, in millions of pixels; above 0
+  std::vector<std::string> set;  ///< "NAME.PROPERTY=VALUE", see applyOverrides()
+  std::string materials_file;    ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
+  // NAMEs as applyOverrides() takes them.
+  std::vector<std::string> one_sided;
+  std::vector<std::string> two_sided;  ///< applied after one_sided
+  std::vector<std::string> flip;       ///< their faces are turned over
+  std::vector<std::string> without;    ///< their faces are left out
   std::optional<Vec3> sky;             ///< replaces Scene::sky; finite, >= 0
   std::optional<Up> up;                ///< replaces Scene::up, which depends on the format
   /// Throws InputError naming the option and its range.
@@ -150,13 +153,16 @@ std::string sceneExtensions();
 /// cure; RunError if the scene does not fit into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `sky`, `up` to a scene already in
-/// memory (one that came back from a results file). NAME is a surface, material or object, tried in
-/// that order, but the material comes first if a surface has its name only because its object has
-/// it too. PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (a
+/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `flip`, `without`, `sky`, `up` to a
+/// scene already in memory (one that came back from a results file). NAME is a surface, material or
+/// object, tried in that order, but the material comes first if a surface has its name only because
+/// its object has it too. If nothing is called so, "all" is every surface, and a pattern
+/// (src/base/name_pattern.h) every surface that it matches by its own name, its object's or its
+/// material's. PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (a
 /// factor of the reflectance); VALUE is one number or three with commas. Reflectance and emission
 /// replace a texture, tint keeps it. A surface that shares its material gets its own copy. A note
-/// names materials of reflectance 1. Unknown names are an InputError that lists the existing ones.
+/// names materials of reflectance 1. Unknown names are an InputError that lists the existing ones,
+/// the most similar first; so is leaving out all faces.
 void applyOverrides(Scene& scene, const SceneOptions& options);
 
 /// One surface as `radiosity info` prints it.

@@ -89,7 +89,7 @@ void warnOfLosses(const HeatBalance& b, FactorsFrom method, double given_off,
     notes.push_back(
         {Severity::warning,
          fmt::format("{} W are lost on surfaces seen from behind, which are black and at 0 K, {}: "
-                     "flipped? turn them round or use --two-sided NAME",
+                     "flipped? turn them over, --flip NAME, or use --two-sided NAME",
                      numberText(b.on_backs, 3), share(b.on_backs))});
   }
   if (worthIt(b.imbalance)) {
@@ -166,7 +166,7 @@ void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& 
     balanceFigures(report, s.balance, given_off);
     surfaceTable(report, surfaces);
     report.text("message", "in words", oneLine(s.message));
-    report.yesNo("usable", "usable", s.usable());
+    usableLine(report, s.usable(), factors);
   }
   warnings(report, s, factors.method, given_off, surfaces, options);
 }

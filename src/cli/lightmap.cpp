@@ -26,6 +26,11 @@ void requireMemory(const Request& request, const LightmapOptions& options) {
                   options.size, bytesText(options.bytes()), bytesText(limit)));
 }
 
+/// Whether faces were turned over or left out.
+bool hasOtherFaces(const Request& request) {
+  return !request.scene.flip.empty() || !request.scene.without.empty();
+}
+
 bool isGltf(const std::string& path) {
   const std::string extension = lowerExtension(path);
   return extension == ".gltf" || extension == ".glb";
@@ -33,8 +38,10 @@ bool isGltf(const std::string& path) {
 
 /// The glTF file whose mesh is kept; empty if there is none. For a results file it is the file that
 /// the scene was read from, where it still is: as it was named then, or beside the results.
-std::string meshSource(const std::string& input, const Scene& scene) {
+std::string meshSource(const Request& request, const Scene& scene) {
   namespace fs = std::filesystem;
+  const std::string& input = request.input;
+  if (hasOtherFaces(request)) return {};
   if (!isResultsFile(input)) return isGltf(input) ? input : std::string();
   if (!isGltf(scene.file)) return {};
   const fs::path beside = fs::path(input).parent_path() / fs::path(scene.file).filename();
@@ -51,7 +58,12 @@ void noteLoss(Session& session, const Scene& scene, const std::string& mesh,
               const std::string& why) {
   const std::string& input = session.request.input;
   std::vector<Note> notes;
-  if (isResultsFile(input) && isGltf(scene.file)) {
+  if (hasOtherFaces(session.request)) {
+    notes.push_back({Severity::warning,
+                     fmt::format("{}: flat faces with base colours: with --flip or --without the "
+                                 "file's own mesh is not kept",
+                                 mesh)});
+  } else if (isResultsFile(input) && isGltf(scene.file)) {
     notes.push_back({Severity::warning,
                      fmt::format("{}: flat faces with base colours, without the textures, normals "
                                  "and cameras of {}, which {}; put it beside {}",
@@ -121,7 +133,7 @@ void writeLightmap(Session& session, const Scene& scene, const PatchMesh& mesh,
                              {"exposure_ev", fmt::format("{}", ev)}}});
               });
   LightmapFile file{std::filesystem::path(request.lightmap).filename().string(), ev,
-                    meshSource(request.input, scene)};
+                    meshSource(request, scene)};
   int set = 0;
   std::string why;
   files.write(Format::glb, "mesh with the lightmap's coordinates",

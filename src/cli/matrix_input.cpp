@@ -34,6 +34,8 @@ void refuseSceneOptions(const Request& request) {
       {"--materials", !request.scene.materials_file.empty()},
       {"--one-sided", !request.scene.one_sided.empty()},
       {"--two-sided", !request.scene.two_sided.empty()},
+      {"--flip", !request.scene.flip.empty()},
+      {"--without", !request.scene.without.empty()},
       {"--sky", request.scene.sky.has_value()},
       {"--patches", request.patches.has_value()},
       {"--max-edge", request.max_edge.has_value()},

@@ -25,10 +25,10 @@ double parseReflectance(const std::string& text) {
 /// Options that also apply to the scene in a results file.
 void addOverrideOptions(CLI::App& app, Request& r) {
   add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
-      "Override a surface, material or object: reflectance (0 to 1), emission (exitance, W/m^2) "
-      "or radiance (W/m^2/sr), which replace a texture, or tint, which keeps it and multiplies; "
-      "one "
-      "number or three (R,G,B). May be repeated");
+      "Override a surface, material or object, those that a pattern matches ('*wall*') or all: "
+      "reflectance (0 to 1), emission (exitance, W/m^2) or radiance (W/m^2/sr), which replace a "
+      "texture, or tint, which keeps it and multiplies; one number or three (R,G,B). May be "
+      "repeated");
   app.add_option_function<std::string>(
          "--sky", [&r](const std::string& text) { r.scene.sky = parseSky(text); },
          "Light an open scene from every direction in which nothing stands, also from below: "
@@ -49,6 +49,11 @@ void addOverrideOptions(CLI::App& app, Request& r) {
       "Make surfaces one-sided: black from behind, but they block. May be repeated");
   add(app, "Scene", "--two-sided", r.scene.two_sided, "NAME|all",
       "Make surfaces two-sided (applied after --one-sided). May be repeated");
+  add(app, "Scene", "--flip", r.scene.flip, "NAME|all",
+      "Turn surfaces over: a room that faces outward, a cap that faces the other way. May be "
+      "repeated");
+  add(app, "Scene", "--without", r.scene.without, "NAME",
+      "Leave surfaces out, for instance glass, which is solid here. May be repeated");
 }
 
 }  // namespace

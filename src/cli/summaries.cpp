@@ -243,12 +243,18 @@ void warnOfBacks(Report& report, const EnergyAccount& e,
   if (seen.size() > 5) names += fmt::format(" and {} more", seen.size() - 5);
   const Note note{Severity::warning,
                   fmt::format("{:.2g}% of the light is lost on surfaces seen from behind: flipped? "
-                              "({}); turn them round or use --two-sided NAME",
+                              "({}); turn them over, --flip NAME, or use --two-sided NAME",
                               100 * lost / incoming(e), names)};
   report.notes({&note, 1});
 }
 
 }  // namespace
+
+void usableLine(Report& report, bool usable, const FormFactors& factors) {
+  const std::string condition = factors.condition();
+  if (!usable || condition.empty()) return report.yesNo("usable", "usable", usable);
+  report.text("usable", "usable", condition);
+}
 
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail) {
@@ -280,7 +286,7 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
     report.seconds("seconds", "time", s.seconds);
     if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // empty if singular
     report.text("message", "in words", oneLine(s.message));
-    report.yesNo("usable", "usable", s.usable());
+    usableLine(report, s.usable(), factors);
   }
   warnOfBacks(report, s.energy, factors.backs_by_surface, mesh);
 }

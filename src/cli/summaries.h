@@ -27,6 +27,8 @@ void describeScene(Report& report, const Scene& scene);
 void summarizeMesh(Report& report, const MeshResult& result, Detail detail);
 void summarizeFactors(Report& report, const FormFactors& factors, const PatchMesh& mesh,
                       Detail detail);
+/// "usable: yes", or what that depends on.
+void usableLine(Report& report, bool usable, const FormFactors& factors);
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail);
 /// The summary also names the larger error: that of elements or that of the matrix.

@@ -20,6 +20,7 @@
 #include "formfactor/hemicube/hemicube_factors.h"
 #include "formfactor/rays/ray_factors.h"
 #include "formfactor/rays/ray_model.h"
+#include "formfactor/row_accounts.h"
 #include "formfactor/shared_factors.h"
 
 namespace radiosity {
@@ -465,6 +466,11 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
     result = clusterFactors(result, prepared.mesh, progress);
   }
   FormFactorReport& report = result.report;
+  if (result.seeNothing()) {
+    if (std::optional<Note> note = nothingSeenNote(prepared.mesh)) {
+      report.notes.push_back(*std::move(note));
+    }
+  }
   report.method_reason = plan.reason;
   // What was prepared for the method is part of its work.
   double preparing = prepared.seconds_exact_rows;

@@ -3,10 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <numeric>
+#include <set>
+#include <string>
 #include <utility>
 
+#include "base/geometry/box.h"
 #include "mesh/clusters/canonical_order.h"
+#include "scene/surface_names.h"
+#include "scene/text.h"
 
 namespace radiosity {
 namespace {
@@ -39,11 +46,55 @@ void noteBacks(const PatchMesh& mesh, FormFactors& result) {
   result.report.notes.push_back(
       {Severity::warning,
        fmt::format("{:.2f}% of the view ends on black backs, seen from behind: {}; flipped? "
-                   "(turn the faces over, or make them two-sided)",
+                   "(turn the faces over, --flip NAME, or --two-sided NAME)",
                    100 * total, names)});
 }
 
+bool isOnePlane(const PlanarPolygons& polygons) {
+  constexpr double kSame = 1e-6;
+  Box3 box;
+  for (const Vec3& origin : polygons.origin) box.add(origin);
+  for (std::size_t p = 1; p < polygons.size(); ++p) {
+    const double off = glm::dot(polygons.origin[p] - polygons.origin[0], polygons.normal[0]);
+    const bool same = glm::dot(polygons.normal[p], polygons.normal[0]) > 1 - kSame &&
+                      std::abs(off) <= kSame * glm::distance(box.low, box.high);
+    if (!same) return false;
+  }
+  return true;
+}
+
+/// The surfaces of closed shells that face outward, in the order of the scene.
+std::vector<std::string> namesOfSolids(const PatchMesh& mesh) {
+  std::set<Index> surfaces;
+  if (!mesh.enclosures) return {};
+  for (const ClosedSurface& closed : mesh.enclosures->surfaces) {
+    if (!closed.is_solid) continue;
+    for (const Index p : closed.polygons) surfaces.insert(mesh.polygons.surface[p]);
+  }
+  std::vector<std::string> names;
+  for (const Index s : surfaces) names.push_back(mesh.surface_names[s]);
+  return names;
+}
+
 }  // namespace
+
+std::optional<Note> nothingSeenNote(const PatchMesh& mesh) {
+  if (isOnePlane(mesh.polygons)) return std::nullopt;
+  constexpr const char* kWhat = "no surface sees another, all form factors are 0";
+  const std::vector<std::string> solids = namesOfSolids(mesh);
+  if (solids.empty()) {
+    return Note{
+        Severity::loud,
+        fmt::format("{}: if surfaces are to face each other, turn some over, --flip NAME, or "
+                    "give them both sides, --two-sided NAME",
+                    kWhat)};
+  }
+  return Note{
+      Severity::loud,
+      fmt::format("{}: the closed shell {} faces outward, so nothing inside it sees "
+                  "anything; if it is a room, turn it over, {}",
+                  kWhat, joinNames(solids, 6), flipOption(solids, mesh.surface_names.size()))};
+}
 
 UnknownOrder unknownOrder(const PatchMesh& mesh) {
   UnknownOrder order;

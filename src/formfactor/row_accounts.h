@@ -2,6 +2,7 @@
 // missing.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,6 +23,10 @@ struct SeenBack {
 void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
                      std::span<const double> area,
                      const std::vector<std::vector<SeenBack>>& seen_backs, FormFactors& result);
+
+/// A loud note for a mesh in which no patch sees the front of another: as a rule a room that faces
+/// outward. Nothing if all lies in one plane and faces alike, which is as it must be.
+std::optional<Note> nothingSeenNote(const PatchMesh& mesh);
 
 /// Unknowns in the order of their first patches in canonicalOrder()
 /// (mesh/clusters/canonical_order.h), and these patches.

@@ -74,7 +74,10 @@ class Passes {
     });
     progress.check();
     progress.end();
-    if (number == 1) accountForBacks();
+    if (number == 1) {
+      accountForBacks();
+      noteNothingSeen();
+    }
     GatherPass pass;
     measure(pass);
     account(pass);
@@ -169,6 +172,13 @@ class Passes {
     }
     for (double& value : share) value = area > 0 ? value / area : 0;
     seen_backs_ = {};
+  }
+
+  void noteNothingSeen() {
+    if (std::ranges::any_of(fronts_, [](float seen) { return seen > 0; })) return;
+    if (std::optional<Note> note = nothingSeenNote(scene_.mesh)) {
+      noteOn(note->severity, std::move(note->text));
+    }
   }
 
   /// B* = E + R F B* and B_k = E + R F B_(k-1) + rounding give

@@ -22,16 +22,7 @@ std::vector<Index> SurfaceTargets::named(const std::string& name) const {
 }
 
 std::vector<Index> SurfaceTargets::matching(const std::string& pattern) const {
-  std::vector<Index> found;
-  for (Index s = 0; s < scene_.surfaces.size(); ++s) {
-    const Surface& surface = scene_.surfaces[s];
-    const std::string& material = scene_.materials[surface.material].name;
-    if (matchesPattern(pattern, surface.name) || matchesPattern(pattern, surface.object) ||
-        matchesPattern(pattern, material)) {
-      found.push_back(s);
-    }
-  }
-  return found;
+  return surfacesMatching(scene_, pattern);
 }
 
 std::optional<double> SurfaceTargets::emissivityOfMaterial(Index target) const {

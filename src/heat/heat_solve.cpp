@@ -424,6 +424,7 @@ HeatSolution HeatSolve::run() {
                  "not converged after {} iterations: residual {:.1e}, heat balance {:.1e}, "
                  "asked for {:.1e}; not usable; allow more iterations or a larger tolerance",
                  iterations, residuals.radiosity, residuals.balance, options_.tolerance);
+  if (good && factors_.seeNothing()) summary.message += fmt::format("; {}", factors_.condition());
   return solution;
 }
 

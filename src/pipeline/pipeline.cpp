@@ -48,7 +48,8 @@ bool isNamedAsResults(const std::string& path) { return lowerExtension(path) == 
 
 bool overrides(const SceneOptions& options) {
   return !options.set.empty() || !options.materials_file.empty() || !options.one_sided.empty() ||
-         !options.two_sided.empty() || options.sky.has_value() || options.up.has_value();
+         !options.two_sided.empty() || !options.flip.empty() || !options.without.empty() ||
+         options.sky.has_value() || options.up.has_value();
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ constexpr std::pair<std::string_view, std::string_view> kRenamed[] = {
     {"--set ", "set: "},
     {"--one-sided ", "one_sided: "},
     {"--two-sided ", "two_sided: "},
+    {"--flip ", "flip: "},
+    {"--without ", "without: "},
     {"--group ", "groups: "},
     {"--condition ", "conditions: "},
     {"--thermal FILE", "table=FILE"},

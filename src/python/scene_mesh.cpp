@@ -23,6 +23,8 @@ std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
   take("materials_file", options.materials_file);
   take("one_sided", options.one_sided);
   take("two_sided", options.two_sided);
+  take("flip", options.flip);
+  take("without", options.without);
   Triple sky{};
   take("sky", sky);
   if (take.has("sky")) options.sky = vec(sky);

@@ -122,9 +122,7 @@ void LightmapGltf::addMeshes() {
       document_["nodes"][std::size_t(number)]["mesh"] = indices[0];
     }
   });
-  if (face != scene_.faceCount()) {
-    file_.fail("has changed since the scene was read from it; start again");
-  }
+  if (face != scene_.faceCount()) failForOtherScene();
   forgetInstancing();
 }
 
@@ -166,13 +164,27 @@ LightmapGltf::Json LightmapGltf::primitivesOf(const tinygltf::Primitive& primiti
                 face,
                 what};
   face += placed.corners.size() / 3;
-  const bool there = face <= scene_.faceCount();
-  if (!there || glm::distance(scene_.vertices[scene_.face(placed.first_face)[0]],
-                              positions[placed.corners[0]]) >
-                    kSamePlace * (1 + glm::length(positions[placed.corners[0]]))) {
-    file_.fail("has changed since the scene was read from it; start again");
-  }
+  if (!isInScene(placed, positions)) failForOtherScene();
   return addPrimitives(given, placed);
+}
+
+/// Whether the scene's faces have the corners of a primitive, in the same order.
+bool LightmapGltf::isInScene(const Placed& placed, std::span<const Vec3> positions) const {
+  for (std::size_t k = 0; k < placed.corners.size(); ++k) {
+    const std::size_t face = placed.first_face + k / 3;
+    if (face >= scene_.faceCount() || scene_.face(face).size() != 3) return false;
+    const Vec3& there = positions[placed.corners[k]];
+    const Vec3& here = scene_.vertices[scene_.face(face)[k % 3]];
+    if (glm::distance(here, there) > kSamePlace * (1 + glm::length(there))) return false;
+  }
+  return true;
+}
+
+void LightmapGltf::failForOtherScene() const {
+  file_.fail(
+      "has changed since the scene was read from it, or the scene has faces turned over or left "
+      "out "
+      "(--flip, --without); start again");
 }
 
 /// Makes the copies of a node its children, with what belongs to a mesh.

@@ -62,6 +62,8 @@ class LightmapGltf {
   Json primitivesOf(const tinygltf::Primitive& primitive, const Json& given,
                     const GltfPlacement& placement, int number, const glm::dmat4& copy,
                     const std::string& what, std::size_t& face);
+  bool isInScene(const Placed& placed, std::span<const Vec3> positions) const;
+  [[noreturn]] void failForOtherScene() const;
   void addCopies(int number, std::span<const std::size_t> meshes,
                  std::span<const glm::dmat4> places);
   void forgetInstancing();

@@ -14,6 +14,7 @@
 #include "base/file_name.h"
 #include "base/input_file.h"
 #include "scene/readers.h"
+#include "scene/scene_builder.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -126,6 +127,7 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
         {Severity::warning, "--vertex-colours: no vertex has a colour that is read"});
   }
   applyOverrides(scene, options);
+  requireMaterials(scene, options);
   return scene;
 }
 

@@ -1,7 +1,8 @@
-// Changes materials by name, after reading.
+// Changes materials, sides and what there is by name, after reading.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <set>
 #include <span>
@@ -11,6 +12,7 @@
 #include "base/input_file.h"
 #include "base/parse.h"
 #include "scene/checks/checks.h"
+#include "scene/face_edits.h"
 #include "scene/json_scan.h"
 #include "scene/scene_builder.h"
 #include "scene/surface_names.h"
@@ -38,8 +40,11 @@ class Overrides {
   void setProperty(const std::string& name, const std::string& property, const Vec3& value,
                    const Origin& origin);
   void setSides(const std::string& name, bool two_sided, const Origin& origin);
+  /// The surfaces that `name` stands for.
+  std::vector<Index> surfacesOf(const std::string& name, const Origin& origin) const;
   void setSky(const Vec3& radiance);
   void readMaterialsFile(const std::string& path);
+  void noteRounding() { rounded_.appendTo(scene_.notes); }
 
  private:
   using ByName = std::unordered_map<std::string, std::vector<Index>>;
@@ -51,13 +56,18 @@ class Overrides {
   Index ownMaterial(Index surface, std::span<const Index> chosen);
   void note(std::string text) { scene_.notes.push_back({Severity::info, std::move(text)}); }
   void noteUnused(const std::string& name, Index material);
+  /// Notes the changes, each once, with the materials that a pattern or "all" stood for.
+  void noteChanges(const std::string& name,
+                   const std::map<std::string, std::set<std::string>>& materials_of);
   // Each returns the change in words.
-  std::string setReflectance(Material& material, const Vec3& value, const Origin& origin);
+  std::string setReflectance(Material& material, const Vec3& given, const Origin& origin);
+  std::string setTint(Material& material, const Vec3& value, const Origin& origin);
   std::string setEmission(Material& material, const Vec3& value, const Origin& origin);
   std::string dropTexture(Index& texture, const char* instead) const;
   std::string dropColours(Index material);
 
   Scene& scene_;
+  FeatureNotes rounded_;
   ByName surfaces_called_;
   ByName surfaces_of_object_;
   ByName materials_called_;
@@ -87,10 +97,7 @@ std::vector<Index> Overrides::materialsOf(const std::string& name, const Origin&
       });
   if (is_material && !called.empty()) return called;
   if (chosen.empty()) chosen = found(surfaces_of_object_, name);
-  if (chosen.empty()) {
-    origin.fail(fmt::format("no surface, material or object is called {}; there are: {}", name,
-                            joinNames(knownNames(scene_), 40)));
-  }
+  if (chosen.empty()) chosen = surfacesOf(name, origin);
   std::vector<Index> materials;
   std::set<Index> seen;
   for (const Index s : chosen) {
@@ -98,6 +105,12 @@ std::vector<Index> Overrides::materialsOf(const std::string& name, const Origin&
     if (seen.insert(material).second) materials.push_back(material);
   }
   return materials;
+}
+
+std::vector<Index> Overrides::surfacesOf(const std::string& name, const Origin& origin) const {
+  std::vector<Index> surfaces = surfacesMeant(scene_, name);
+  if (surfaces.empty()) origin.fail(unknownNameText(scene_, name));
+  return surfaces;
 }
 
 /// The material of `surface`, which only the `chosen` surfaces, ascending, share after the call.
@@ -122,8 +135,8 @@ std::string withTexture(const Vec3& factor, Index texture) {
   return describeBands(factor) + (texture == kNone ? "" : " x texture");
 }
 
-std::string setTint(Material& material, const Vec3& value, const Origin& origin) {
-  const Vec3 tinted = material.reflectance * value;
+std::string Overrides::setTint(Material& material, const Vec3& value, const Origin& origin) {
+  const Vec3 tinted = settledReflectance(material.reflectance * value, material.name, rounded_);
   checkReflectance(origin.text, material.name, tinted);
   const std::string before = withTexture(material.reflectance, material.texture);
   material.reflectance = tinted;
@@ -137,15 +150,27 @@ void Overrides::setProperty(const std::string& name, const std::string& property
     origin.fail(fmt::format("`{}` is none of reflectance, tint, emission, radiance", property));
   }
   const Vec3 asked = property == "radiance" ? std::numbers::pi * value : value;
-  std::set<std::string> said;
+  std::map<std::string, std::set<std::string>> changes;
   for (const Index m : materialsOf(name, origin)) {
     Material& material = scene_.materials[m];
     const std::string change = emission             ? setEmission(material, asked, origin)
                                : property == "tint" ? setTint(material, asked, origin)
                                                     : setReflectance(material, asked, origin);
     const std::string dropped = property == "reflectance" ? dropColours(m) : "";
-    if (said.insert(change).second) note(fmt::format("{}: {}{}", name, change, dropped));
+    changes[change + dropped].insert(scene_.materials[m].name);
     noteUnused(name, m);
+  }
+  noteChanges(name, changes);
+}
+
+void Overrides::noteChanges(const std::string& name,
+                            const std::map<std::string, std::set<std::string>>& materials_of) {
+  const bool literal = materials_called_.contains(name) || surfaces_called_.contains(name) ||
+                       surfaces_of_object_.contains(name);
+  for (const auto& [change, materials] : materials_of) {
+    const std::vector<std::string> names(materials.begin(), materials.end());
+    note(literal ? fmt::format("{}: {}", name, change)
+                 : fmt::format("{} ({}): {}", name, joinNames(names), change));
   }
 }
 
@@ -169,7 +194,8 @@ std::string Overrides::dropColours(Index material) {
   return dropped ? "; its vertex colours are dropped (tint keeps them)" : "";
 }
 
-std::string Overrides::setReflectance(Material& material, const Vec3& value, const Origin& origin) {
+std::string Overrides::setReflectance(Material& material, const Vec3& given, const Origin& origin) {
+  const Vec3 value = settledReflectance(given, material.name, rounded_);
   checkReflectance(origin.text, material.name, value);
   const std::string before = withTexture(material.reflectance, material.texture);
   material.reflectance = value;
@@ -207,11 +233,7 @@ void Overrides::setSides(const std::string& name, bool two_sided, const Origin& 
     changed += material.two_sided != two_sided ? 1 : 0;
     material.two_sided = two_sided;
   };
-  if (name == "all") {
-    for (Material& material : scene_.materials) set(material);
-  } else {
-    for (const Index m : materialsOf(name, origin)) set(scene_.materials[m]);
-  }
+  for (const Index m : materialsOf(name, origin)) set(scene_.materials[m]);
   note(fmt::format("{}: {}-sided{}", name, two_sided ? "two" : "one",
                    changed == 0 ? ", as it was" : ""));
 }
@@ -297,6 +319,7 @@ void noteWhiteMaterials(Scene& scene) {
 
 void applyOverrides(Scene& scene, const SceneOptions& options) {
   options.validate();
+  FaceEdits edits(scene);
   // We change a copy, so that a failing override leaves the caller's scene unchanged.
   std::vector<Material> materials = scene.materials;
   std::vector<Surface> surfaces = scene.surfaces;
@@ -311,6 +334,14 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
     for (const std::string& name : options.two_sided) {
       overrides.setSides(name, true, {"--two-sided " + name});
     }
+    for (const std::string& name : options.flip) {
+      edits.flip(name, overrides.surfacesOf(name, {"--flip " + name}));
+    }
+    for (const std::string& name : options.without) {
+      edits.leaveOut(name, overrides.surfacesOf(name, {"--without " + name}));
+    }
+    edits.requireFaces();
+    overrides.noteRounding();
     if (options.sky) overrides.setSky(*options.sky);
     if (options.up) scene.up = *options.up;
   } catch (...) {
@@ -319,6 +350,7 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
     scene.notes = std::move(notes);
     throw;
   }
+  edits.apply();
   noteWhiteMaterials(scene);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/finite.h"
 #include "base/srgb.h"
 #include "scene/text.h"
 
@@ -112,8 +113,8 @@ void SceneBuilder::dropUnusableTextures() {
     // A surface that emits all over would be worse than one that does not emit.
     if (std::exchange(plain.emission_texture, kNone) != kNone) {
       plain.emission = Vec3(0.0);
-      notes.add("emissive texture not used, faces without texture coordinates; they emit nothing",
-                name, Severity::warning);
+      notes.add("emission texture not used, faces without texture coordinates; they EMIT NOTHING",
+                name, Severity::loud);
     }
     surface.material = Index(scene_.materials.size());
     scene_.materials.push_back(std::move(plain));
@@ -154,22 +155,88 @@ void replaceStandIn(Material& material, const std::string& name, const char* fac
   material.reflectance = Vec3(options.default_reflectance);
 }
 
-void checkReflectance(const std::string& where, const std::string& name, const Vec3& reflectance) {
+Vec3 settledReflectance(const Vec3& reflectance, const std::string& material, FeatureNotes& notes) {
+  constexpr double kRounding = 1e-6;  // a few units in the last place of a float
+  Vec3 settled = reflectance;
   for (int band = 0; band < 3; ++band) {
-    if (reflectance[band] >= 0 && reflectance[band] <= 1) continue;
-    throw InputError(fmt::format(
-        "{}: material {}: reflectance {} is outside 0 to 1; a surface returns no more light than "
-        "it gets, scale it down",
-        where, name, describeBands(reflectance)));
+    if (settled[band] > 1 && settled[band] <= 1 + kRounding) settled[band] = 1;
   }
+  if (isReflectance(settled) && settled != reflectance) {
+    notes.add("reflectance above 1 by float rounding, taken as 1, material", material);
+  }
+  return settled;
+}
+
+bool isReflectance(const Vec3& reflectance) {
+  return reflectance.x >= 0 && reflectance.x <= 1 && reflectance.y >= 0 && reflectance.y <= 1 &&
+         reflectance.z >= 0 && reflectance.z <= 1;
+}
+
+bool isEmission(const Vec3& emission) {
+  return isFinite(emission) && emission.x >= 0 && emission.y >= 0 && emission.z >= 0;
+}
+
+namespace {
+
+/// All digits, so that the text shows what is wrong with 1.0000012.
+std::string exactBands(const Vec3& value) {
+  if (value.x == value.y && value.y == value.z) return fmt::format("{}", value.x);
+  return fmt::format("{} {} {}", value.x, value.y, value.z);
+}
+
+std::string reflectanceFault(const Vec3& reflectance) {
+  return fmt::format(
+      "reflectance {} is outside 0 to 1; a surface returns no more light than it gets, scale it "
+      "down",
+      exactBands(reflectance));
+}
+
+std::string emissionFault(const Vec3& value, const char* unit) {
+  return fmt::format("emission {} {} is not a finite value of 0 or more; correct it",
+                     exactBands(value), unit);
+}
+
+}  // namespace
+
+void checkReflectance(const std::string& where, const std::string& name, const Vec3& reflectance) {
+  if (isReflectance(reflectance)) return;
+  throw InputError(fmt::format("{}: material {}: {}", where, name, reflectanceFault(reflectance)));
 }
 
 void checkEmission(const std::string& where, const std::string& name, const Vec3& emission) {
-  for (int band = 0; band < 3; ++band) {
-    if (emission[band] >= 0 && std::isfinite(emission[band])) continue;
-    throw InputError(
-        fmt::format("{}: material {}: emission {} is not a finite value of 0 or more; correct it",
-                    where, name, describeBands(emission)));
+  if (isEmission(emission)) return;
+  throw InputError(
+      fmt::format("{}: material {}: {}", where, name, emissionFault(emission, "W/m^2")));
+}
+
+bool mayMend(const SceneOptions& options) {
+  return !options.set.empty() || !options.materials_file.empty() || !options.without.empty();
+}
+
+void requireMaterial(const std::string& where, const Material& material) {
+  const bool reflects = isReflectance(material.reflectance);
+  if (reflects && isEmission(material.emission)) return;
+  throw InputError(fmt::format("{}: material {}: {}, or --set '{}.{}'", where, material.name,
+                               reflects ? emissionFault(material.radiance(), "W/m^2/sr")
+                                        : reflectanceFault(material.reflectance),
+                               material.name, reflects ? "radiance=0" : "reflectance=0.8"));
+}
+
+void requireMaterials(Scene& scene, const SceneOptions& options) {
+  std::vector<std::uint8_t> used(scene.materials.size(), 0);
+  for (const Index surface : scene.face_surface) used[scene.surfaces[surface].material] = 1;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    Material& material = scene.materials[m];
+    if (used[m] != 0) requireMaterial(scene.file, material);
+    if (isReflectance(material.reflectance) && isEmission(material.emission)) continue;
+    scene.notes.push_back(
+        {Severity::warning,
+         fmt::format("material {}: no face has it; its reflectance {} or emission {} W/m^2 is out "
+                     "of range, reflectance {} and none are taken",
+                     material.name, exactBands(material.reflectance), exactBands(material.emission),
+                     options.default_reflectance)});
+    material.reflectance = Vec3(options.default_reflectance);
+    material.emission = Vec3(0.0);
   }
 }
 

@@ -75,6 +75,15 @@ inline bool isTextured(const Material& material) {
   return material.texture != kNone || material.emission_texture != kNone;
 }
 
+/// The feature (FeatureNotes) of materials that light goes through, wholly or in part.
+inline constexpr const char* kSolidFeature =
+    "transparency is not used: it is solid and blocks light (--without NAME leaves it out), "
+    "material";
+/// Of those with holes, which an image cuts out.
+inline constexpr const char* kMaskFeature =
+    "holes (alpha masks) are not cut out: it is solid and blocks light (--without NAME leaves it "
+    "out), material";
+
 /// The name of the material of faces without one.
 inline constexpr const char* kNoMaterial = "default";
 
@@ -94,6 +103,25 @@ Note noMaterialNote(const std::vector<std::string>& names, bool coloured,
 /// leaves the texture as it is and alone would return all light, or a 0 that was not meant.
 void replaceStandIn(Material& material, const std::string& name, const char* factor,
                     const SceneOptions& options, FeatureNotes& notes);
+
+/// A reflectance as it counts: what float rounding put above 1, by at most 1e-6, is 1, with a note.
+Vec3 settledReflectance(const Vec3& reflectance, const std::string& material, FeatureNotes& notes);
+
+// Readers keep what is out of range if options may mend it: requireMaterials() comes after these.
+
+/// Whether options may replace or leave out what a file has.
+bool mayMend(const SceneOptions& options);
+
+bool isReflectance(const Vec3& reflectance);
+bool isEmission(const Vec3& emission);
+
+/// Throws InputError "WHERE: material NAME: ...", with the cure, unless isReflectance() and
+/// isEmission().
+void requireMaterial(const std::string& where, const Material& material);
+
+/// The same for every material of a face. Others get the default reflectance and no emission, with
+/// a note.
+void requireMaterials(Scene& scene, const SceneOptions& options);
 
 /// Throws InputError "WHERE: material NAME: ..." unless 0 <= rho <= 1 in every band.
 void checkReflectance(const std::string& where, const std::string& name, const Vec3& reflectance);

@@ -1,7 +1,14 @@
 #include "scene/surface_names.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <numeric>
 #include <set>
+
+#include "base/name_pattern.h"
+#include "base/near_names.h"
+#include "scene/text.h"
 
 namespace radiosity {
 
@@ -26,6 +33,28 @@ std::vector<Index> surfacesNamed(const Scene& scene, const std::string& name) {
   return surfaces.empty() ? of_object : surfaces;
 }
 
+std::vector<Index> surfacesMatching(const Scene& scene, const std::string& pattern) {
+  std::vector<Index> found;
+  for (Index s = 0; s < scene.surfaces.size(); ++s) {
+    const Surface& surface = scene.surfaces[s];
+    if (matchesPattern(pattern, surface.name) || matchesPattern(pattern, surface.object) ||
+        matchesPattern(pattern, scene.materials[surface.material].name)) {
+      found.push_back(s);
+    }
+  }
+  return found;
+}
+
+std::vector<Index> surfacesMeant(const Scene& scene, const std::string& name) {
+  std::vector<Index> found = surfacesNamed(scene, name);
+  if (!found.empty()) return found;
+  if (isPattern(name)) return surfacesMatching(scene, name);
+  if (name != kAllSurfaces) return {};
+  found.resize(scene.surfaces.size());
+  std::iota(found.begin(), found.end(), Index(0));
+  return found;
+}
+
 std::vector<std::string> knownNames(const Scene& scene) {
   std::vector<std::string> names;
   std::set<std::string> seen;
@@ -36,6 +65,23 @@ std::vector<std::string> knownNames(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) add(surface.object);
   for (const Surface& surface : scene.surfaces) add(surface.name);
   return names;
+}
+
+std::string flipOption(const std::vector<std::string>& names, std::size_t all) {
+  constexpr std::size_t kFew = 6;
+  if (names.size() == all) return "--flip all";
+  std::string text;
+  for (std::size_t k = 0; k < std::min(kFew, names.size()); ++k) {
+    text += fmt::format("{}--flip '{}'", k == 0 ? "" : " ", names[k]);
+  }
+  return names.size() > kFew ? text + " and so on" : text;
+}
+
+std::string unknownNameText(const Scene& scene, const std::string& name) {
+  constexpr std::size_t kMostNames = 40;
+  const std::vector<std::string> names = nearestFirst(name, knownNames(scene));
+  return fmt::format("no surface, material or object {} {}; there are: {}",
+                     isPattern(name) ? "matches" : "is called", name, joinNames(names, kMostNames));
 }
 
 }  // namespace radiosity

@@ -103,16 +103,21 @@ std::string LoadedTexture::problemAs(TextureUse use) const {
   return "has texels above 1, which are no reflectances";
 }
 
-void noteUnusedTexture(const std::string& file, const std::string& problem, const char* what,
-                       const std::string& material, FeatureNotes& notes) {
+void noteUnusedTexture(const std::string& file, const std::string& problem, TextureUse use,
+                       const char* what, const std::string& material, FeatureNotes& notes) {
+  const bool emits = use == TextureUse::emission;
+  const Severity severity = emits ? Severity::loud : Severity::warning;
+  const char* const texture = emits ? "emission texture" : "texture";
+  const std::string then = emits ? "it EMITS NOTHING (--set NAME.radiance gives it one all over)"
+                                 : fmt::format("the {} alone counts", what);
   if (problem != kImageMissing) {
-    notes.add(fmt::format("texture {} {}; the {} alone counts, material", file, problem, what),
-              material, Severity::warning);
+    notes.add(fmt::format("{} {} {}; {}, material", texture, file, problem, then), material,
+              severity);
     return;
   }
   constexpr std::size_t kShown = 4;  // with their paths
-  notes.add(fmt::format("textures that are not there; the {} alone counts, material", what),
-            fmt::format("{} ({})", material, file), Severity::warning, kShown);
+  notes.add(fmt::format("{}s that are not there; {}, material", texture, then),
+            fmt::format("{} ({})", material, file), severity, kShown);
 }
 
 LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene) {

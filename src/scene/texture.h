@@ -33,11 +33,12 @@ struct LoadedTexture {
   std::string problemAs(TextureUse use) const;
 };
 
-/// Notes that only the `what` (factor or colour) of `material` counts, since the image `file`
-/// cannot be used because of `problem`. Missing images share one note: if a folder is missing, all
-/// are.
-void noteUnusedTexture(const std::string& file, const std::string& problem, const char* what,
-                       const std::string& material, FeatureNotes& notes);
+/// Notes that the image `file` cannot be used because of `problem`, so that only the `what` (factor
+/// or colour) of `material` counts. Without its emission texture a material must emit nothing: a
+/// house of which the windows alone should would emit all over. Missing images share one note: if a
+/// folder is missing, all are.
+void noteUnusedTexture(const std::string& file, const std::string& problem, TextureUse use,
+                       const char* what, const std::string& material, FeatureNotes& notes);
 
 /// Adds a result to the scene's textures.
 LoadedTexture keepTexture(TextureResult result, bool repeat, Scene& scene);

@@ -141,6 +141,9 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
     solution.radiosity = plan.spread(fields.radiosity);
     solution.irradiance = plan.spread(fields.irradiance);
   }
+  if (summary.usable() && factors.seeNothing()) {
+    summary.message += fmt::format("; {}", factors.condition());
+  }
   for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
   summary.energy = energyAccount(factors, reflectance, {emission, from_sky}, solution.radiosity,
                                  solution.irradiance, bands);

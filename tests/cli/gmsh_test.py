@@ -130,6 +130,16 @@ class Gmsh(CliTest):
                 self.assertIn(piece, whole)
                 self.says(line, whole.replace(piece, new))
 
+    def test_other_formats_of_this_extension_are_named(self):
+        for text in ("$NOD\n1\n1 0 0 0\n$ENDNOD\n$ELM\n0\n$ENDELM\n", "$PARA\n$ENDPARA\n"):
+            self.say_format(text, "is a Gmsh mesh of format 1, which is not read; convert it to 4.1: gmsh "
+                                  "'a.msh' -save -format msh41 -o NEW.msh")
+        self.say_format('(0 "GAMBIT to Fluent")\n(2 3)\n', "is a mesh of Fluent, not of Gmsh")
+
+    def say_format(self, text, words):
+        self.put(text)
+        self.refuse("info", "a.msh", words=["a.msh: " + words])
+
     def test_broken_binary_is_refused_by_byte(self):
         for whole in [mesh_files.to_gmsh2(MESH, binary=True), mesh_files.to_gmsh4(MESH, binary=True)]:
             self.put(whole)

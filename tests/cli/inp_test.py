@@ -165,6 +165,12 @@ class Inp(CliTest):
                   "*INCLUDE, INPUT=gone.inp\n")
         self.says(":1: more than 16 files include one another; write them into one", "*INCLUDE, INPUT=a.inp\n")
 
+    def test_nothing_of_another_file_is_quoted(self):
+        self.put("root:x:0:0:root\n*secret\n", "secret.txt")
+        line = self.refuse("info", self.put(HEAD + "*INCLUDE, INPUT=secret.txt\n"))
+        self.assertEqual(line, "radiosity: secret.txt: begins with neither a keyword nor numbers, so it is no "
+                         "input of CalculiX or Abaqus; correct the *INCLUDE")
+
     def test_broken_files_are_refused_by_line(self):
         text = HEAD + TWO
         for old, new, line in [

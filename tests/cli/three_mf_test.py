@@ -127,7 +127,7 @@ class ThreeMf(CliTest):
             for found, value in zip(colours[name], expected):
                 self.assertAlmostEqual(found, value, 5)
         err = self.run_program("info", "a.3mf").err
-        for words in ["transparency (the colour's alpha) is not used, material: grey",
+        for words in ["(--without NAME leaves it out), material: grey",
                       "colours that change over a triangle are not read, default reflectance there, in: b",
                       "multiproperties) are not read, default reflectance for: b", "reflectance 0.5: b"]:
             self.assertIn(words, err)

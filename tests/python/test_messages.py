@@ -102,6 +102,26 @@ def test_wrong_values_are_named(plates, call, message):
     refused(lambda: call(plates), message)
 
 
+def test_a_room_that_faces_outward_is_said_and_turned(tmp_path):
+    square = {"floor": "1 4 3 2", "ceiling": "5 6 7 8", "wall": "1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8"}
+    path = tmp_path / "room.obj"
+    path.write_text("".join(f"v {x} {y} {z}\n" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
+                    + "".join(f"o {name}\nf {faces}\n" for name, faces in square.items()))
+    with pytest.warns(UserWarning, match="^no material"):
+        scene = rad.load(path)
+        turned = rad.load(path, flip="all")
+        without = rad.load(path, without=["ceil*"])
+    with pytest.warns(UserWarning, match="the closed shell floor, ceiling, wall faces "
+                                         "outward, .* turn it over, flip: all$"):
+        assert rad.form_factors(rad.mesh(scene, patches=6)).csr().nnz == 0
+    assert any(note["text"].startswith("all (") and "turned over" in note["text"] for note in turned.notes)
+    factors = rad.form_factors(rad.mesh(turned, patches=6), tolerance=1e-6)
+    assert factors.csr()[0, 1] == pytest.approx(.199825, abs=2e-6)  # opposite faces of a cube
+    assert without.surface_names == ["floor", "wall"]
+    with pytest.raises(rad.InputError, match="^without: flor: no surface, material or object is called flor"):
+        rad.load(path, without="flor")
+
+
 def test_whole_numbers_may_be_of_any_type(plates):
     mesh = rad.mesh(plates.mesh.scene, patches=np.float32(8))
     assert len(mesh) == len(rad.mesh(mesh.scene, patches=np.int16(8))) == len(rad.mesh(mesh.scene, patches=8))

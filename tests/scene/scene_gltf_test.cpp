@@ -68,7 +68,9 @@ TEST_F(SceneGltf, ReadsMaterials) {
       << "the one that a material has is named with it";
   EXPECT_NOTE(scene.notes, "metalness is not used (glTF's default is 1), material: lamp#2",
               Severity::info);
-  EXPECT_NOTE(scene.notes, "transparency (alphaMode) is not used, material: lamp#2",
+  EXPECT_NOTE(scene.notes,
+              "transparency is not used: it is solid and blocks light (--without NAME leaves it "
+              "out), material: lamp#2",
               Severity::warning);
   const Note* const white = findNote(scene.notes, "reflectance 1: absorbs no light");
   ASSERT_NE(white, nullptr);
@@ -76,8 +78,46 @@ TEST_F(SceneGltf, ReadsMaterials) {
   EXPECT_TRUE(white->text.ends_with("--set NAME.reflectance): lamp#2")) << white->text;
 }
 
+TEST_F(SceneGltf, NamesWhatIsNotUsed) {
+  Document d = triangle();
+  d.json["extensionsUsed"] = {"KHR_materials_transmission"};
+  d.json["images"] = {{{"uri", "lost.png"}}};
+  d.json["textures"] = {{{"source", 0}}};
+  d.json["materials"] = {
+      {{"name", "stone"},
+       {"normalTexture", {{"index", 0}}},
+       {"occlusionTexture", {{"index", 0}}},
+       {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", .3}}}},
+      {{"name", "pane"},
+       {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}},
+      {{"name", "fence"}, {"alphaMode", "MASK"}}};
+  const Scene scene = load(d);
+  EXPECT_NOTE(scene.notes, "normal maps are not used, material: stone", Severity::info);
+  EXPECT_NOTE(scene.notes, "occlusion maps are not used, material: stone", Severity::info);
+  EXPECT_NOTE(scene.notes, "roughness is not used, all is matt, material: stone", Severity::info);
+  EXPECT_NOTE(scene.notes, "(--without NAME leaves it out), material: pane", Severity::warning);
+  EXPECT_NOTE(scene.notes, "holes (alpha masks) are not cut out: it is solid", Severity::warning);
+}
+
+TEST_F(SceneGltf, TakesAColourOneUnitOfAFloatAboveOneAsOne) {
+  Document d = triangle();
+  d.json["meshes"][0]["primitives"][0]["material"] = 0;
+  const auto with = [&](double red) {
+    d.json["materials"] = {
+        {{"name", "red"}, {"pbrMetallicRoughness", {{"baseColorFactor", {red, .5, .5, 1}}}}}};
+  };
+  with(1.00000012);
+  const Scene scene = load(d);
+  EXPECT_EQ(scene.materialOf(0).reflectance, Vec3(1, .5, .5));
+  EXPECT_NOTE(scene.notes, "reflectance above 1 by float rounding, taken as 1, material: red",
+              Severity::info);
+  with(1.0000012);
+  EXPECT_CONTAINS(errorOf(d), "material red: reflectance 1.0000012 0.5 0.5 is outside 0 to 1");
+}
+
 TEST_F(SceneGltf, RefusesImpossibleMaterialsByName) {
   Document d = triangle();
+  d.json["meshes"][0]["primitives"][0]["material"] = 0;
   d.json["materials"] = {
       {{"name", "red"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, 0, 0, 1}}}}}};
   EXPECT_CONTAINS(errorOf(d), "material red: reflectance 1.5 0 0 is outside 0 to 1");

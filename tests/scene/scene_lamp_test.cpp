@@ -38,6 +38,33 @@ TEST(LikelyLamp, IsNotALightShadeOfAMaterial) {
   EXPECT_EQ(likelyLamp(builder.scene()), "deskLight");
 }
 
+TEST(LikelyLamp, IsNoFloorAndNoWallsOfALightColour) {
+  // By the name of the object and of the material; the panel alone is like a lamp.
+  for (const bool by_object : {true, false}) {
+    for (const std::string part : {"floor", "walls"}) {
+      for (const bool with_panel : {true, false}) {
+        SceneBuilder builder;
+        builder.scene().up = Up::z;
+        const auto surface = [&](const std::string& name) {
+          return by_object
+                     ? builder.surfaceOf(name == part ? "Light" : name, builder.material(name))
+                     : builder.surfaceOf(name, builder.material(name == part ? "Light" : name));
+        };
+        const Index walls = surface("walls");
+        builder.face(walls, {{0, 0, 0}, {0, 0, 3}, {4, 0, 3}, {4, 0, 0}});
+        builder.face(walls, {{0, 4, 0}, {4, 4, 0}, {4, 4, 3}, {0, 4, 3}});
+        builder.face(walls, {{0, 0, 0}, {0, 4, 0}, {0, 4, 3}, {0, 0, 3}});
+        builder.face(walls, {{4, 0, 0}, {4, 0, 3}, {4, 4, 3}, {4, 4, 0}});
+        builder.level(surface("floor"), 0, 0, 4, 4, 0);
+        builder.level(surface("top"), 0, 0, 4, 4, 3, false);
+        if (with_panel) builder.level(builder.surface("ceiling light"), 1, 1, 2, 2, 2.9, false);
+        EXPECT_EQ(likelyLamp(builder.scene()), with_panel ? "ceiling light" : "top/top")
+            << part << by_object;
+      }
+    }
+  }
+}
+
 TEST(LikelyLamp, IsTheCeilingIfNoNameTells) {
   SceneBuilder named;
   named.level(named.surface("floor"), 0, 0, 1, 1, 0);

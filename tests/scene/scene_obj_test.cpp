@@ -275,6 +275,18 @@ TEST_F(SceneObj, StatementsOfMaterialsThatAreNotUsedMayBeNonsense) {
   EXPECT_NOTE(scene.notes, "no numbers: `-nan(ind)` in line 3", Severity::info);
 }
 
+TEST_F(SceneObj, QuotesNothingOfAFileThatIsNoMtl) {
+  // As of a foreign file that an OBJ names: none of its words may show.
+  write("secret.txt", "root:x:0:0:root\nKd secret secret secret\nmap_Kd secret\nnewmtlsecret 1\n");
+  const Scene scene = load("mtllib secret.txt\n" + kSquare + "usemtl red\n" + kFace);
+  EXPECT_NOTE(scene.notes, "secret.txt: defines no material (newmtl), so it is no MTL file",
+              Severity::warning);
+  for (const Note& note : scene.notes) {
+    EXPECT_EQ(note.text.find("root"), std::string::npos) << note.text;
+    EXPECT_EQ(note.text.find("Kd"), std::string::npos) << note.text;
+  }
+}
+
 TEST_F(SceneObj, RefusesMaterialsThatAreImpossible) {
   const auto errorWith = [&](const std::string& line) {
     write("m.mtl", "# paint\nnewmtl red\n" + line + "\n");
@@ -282,13 +294,13 @@ TEST_F(SceneObj, RefusesMaterialsThatAreImpossible) {
   };
   EXPECT_CONTAINS(errorWith("Kd 1.2 0 0"), "m.mtl:3: material red: reflectance 1.2 0 0");
   EXPECT_CONTAINS(errorWith("Kd -.1 0 0"), "outside 0 to 1");
-  EXPECT_CONTAINS(errorWith("Kd nan 0 0"), "m.mtl:3: material red: `nan`");
+  EXPECT_CONTAINS(errorWith("Kd nan 0 0"), "m.mtl:3: material red: reflectance nan 0 0 is outside");
   EXPECT_CONTAINS(errorWith("Kd red"), "m.mtl:3: material red: `red`");
   EXPECT_CONTAINS(errorWith("Kd 0,5 0,5 0,5"), "`0,5`");
   EXPECT_CONTAINS(errorWith("Kd .1 .2"), "give red, green and blue");
   EXPECT_CONTAINS(errorWith("Kd"), "give red, green and blue");
   EXPECT_CONTAINS(errorWith("Ke -1 0 0"), "material red: emission -1 0 0");
-  EXPECT_CONTAINS(errorWith("Ke inf 0 0"), "`inf`");
+  EXPECT_CONTAINS(errorWith("Ke inf 0 0"), "m.mtl:3: material red: emission nan 0 0");
   // The ends of the range are legal.
   write("m.mtl", "newmtl red\nKd 1 0 1\n");
   EXPECT_EQ(load("mtllib m.mtl\n" + kSquare + "usemtl red\n" + kFace).materialOf(0).reflectance,
@@ -337,13 +349,15 @@ TEST_F(SceneObj, NamesMaterialPropertiesThatAreNotDiffuse) {
   const Scene scene = load("mtllib m.mtl\n" + kSquare + "usemtl glass\n" + kFace +
                            "usemtl steel\n" + kFace + "usemtl bare\n" + kFace);
   EXPECT_NOTE(scene.notes, "(Ks) is not used, material: glass", Severity::info);
-  EXPECT_NOTE(scene.notes, "transparency (d, Tr) is not used, material: glass", Severity::warning);
+  EXPECT_NOTE(scene.notes, "leaves it out), material: glass", Severity::warning);
   EXPECT_NOTE(scene.notes, "texture map_Bump is not used, material: glass", Severity::info);
   EXPECT_NOTE(scene.notes, "metalness (Pm) is not used, material: steel", Severity::info);
   EXPECT_NOTE(
       scene.notes,
-      fmt::format("are not there; the factor alone counts, material: steel ({})", path("e.png")),
-      Severity::warning);
+      fmt::format(
+          "it EMITS NOTHING (--set NAME.radiance gives it one all over), material: steel ({})",
+          path("e.png")),
+      Severity::loud);
   EXPECT_NOTE(scene.notes, "unknown MTL statement `blurb`", Severity::warning);
   EXPECT_NOTE(scene.notes, "material bare gives no Kd: reflectance 0.5", Severity::info);
   EXPECT_NOTE(scene.notes, "m.mtl:17: material bare is defined twice", Severity::warning);

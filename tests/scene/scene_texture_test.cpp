@@ -276,7 +276,19 @@ TEST_F(SceneTexture, AnEmissiveTextureMultipliesKe) {
         "Ke is 0 beside map_Ke: the texture alone counts (1 is 1 W/m^2/sr), material: paint",
         Severity::info);
   }
-  EXPECT_EQ(load("map_Ke lost.png\n").materialOf(0).emission, Vec3(0));
+  // A lamp that has lost its texture would emit all over.
+  for (const std::string ke : {"", "Ke 0 0 0\n", "Ke 3 2 1\n"}) {
+    scene = load(ke + "map_Ke lost.png\n");
+    EXPECT_EQ(scene.materialOf(0).emission, Vec3(0));
+    EXPECT_NOTE(scene.notes,
+                "emission textures that are not there; it EMITS NOTHING (--set NAME.radiance gives "
+                "it one all over), material: paint",
+                Severity::loud);
+  }
+  write("text.png", "no image");
+  scene = load("Ke 3 2 1\nmap_Ke text.png\n");
+  EXPECT_EQ(scene.materialOf(0).emission, Vec3(0));
+  EXPECT_NOTE(scene.notes, "it EMITS NOTHING", Severity::loud);
   SceneOptions options;
   options.set = {"paint.radiance=3"};
   scene = load("Ke 1 1 1\nmap_Ke grey.png\n", options);
@@ -291,9 +303,9 @@ TEST_F(SceneTexture, AnEmissiveTextureNeedsCoordinatesToo) {
   EXPECT_EQ(scene.materialOf(0).emission_texture, 0u);
   EXPECT_EQ(scene.materialOf(1).emission, Vec3(0));
   EXPECT_NOTE(scene.notes,
-              "emissive texture not used, faces without texture coordinates; they emit nothing: "
+              "emission texture not used, faces without texture coordinates; they EMIT NOTHING: "
               "bare/paint",
-              Severity::warning);
+              Severity::loud);
 }
 
 /// A textured triangle; `texture_info` is the material's baseColorTexture.
@@ -399,14 +411,23 @@ TEST_F(SceneGltfTexture, ReadsEmissiveTextures) {
   json["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
   scene = load(json);
   EXPECT_EQ(scene.materialOf(0).emission_texture, kNone);
-  EXPECT_NOTE(scene.notes, "the emissive texture has other coordinates than the base colour",
-              Severity::warning);
+  EXPECT_EQ(scene.materialOf(0).emission, Vec3(0));
+  EXPECT_NOTE(scene.notes, "the emission texture has other coordinates than the base colour",
+              Severity::loud);
   // Alone, it may have any.
   json["materials"][0].erase("pbrMetallicRoughness");
   json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = 1;
   scene = load(json);
   EXPECT_EQ(scene.materialOf(0).emission_texture, 0u);
   EXPECT_EQ(scene.texcoords.size(), 3u);
+  // Of an image that is not there, or not read, nothing shines.
+  for (const Json& image : {Json{{"uri", "lost.png"}}, Json{{"uri", "lost.ktx2"}}}) {
+    Json lost = json;
+    lost["images"] = {image};
+    scene = load(lost);
+    EXPECT_EQ(scene.materialOf(0).emission, Vec3(0));
+    EXPECT_NOTE(scene.notes, "EMITS NOTHING", Severity::loud);
+  }
   // A factor of 0, the default, emits nothing whatever the texture.
   json["materials"][0].erase("emissiveFactor");
   EXPECT_EQ(load(json).materialOf(0).emission_texture, kNone);

@@ -19,6 +19,7 @@
 #include "mesh/faces/sheets.h"
 #include "mesh/polygons/merge_cells.h"
 #include "mesh/polygons/uncut_faces.h"
+#include "scene/checks/checks.h"
 #include "scene/checks/far_apart.h"
 
 namespace radiosity {
@@ -108,17 +109,18 @@ void accountForWelding(const InputFaces& input, const std::vector<Plane>& planes
 
 /// Notes surfaces that were dropped altogether, loudly: a room modelled inside out is a solid and
 /// buries its furniture.
-void noteBuriedSurfaces(const CoarseComplex& complex, MeshReport& report) {
+void noteBuriedSurfaces(const CoarseComplex& complex, const Scene& scene, double weld,
+                        MeshReport& report) {
   std::vector<bool> seen(report.surfaces.size(), false);
   for (const CoarsePolygon& p : complex.polygons) seen[p.surface] = true;
+  std::vector<Index> buried;
   for (std::size_t s = 0; s < seen.size(); ++s) {
     const SurfaceAreas& areas = report.surfaces[s];
-    if (seen[s] || areas.buried <= 0.5 * areas.given) continue;
-    report.notes.push_back(
-        {Severity::loud,
-         fmt::format("{}: lies wholly inside a closed solid or a dark hollow and was "
-                     "dropped; if that is a room, its faces are turned outward",
-                     areas.name)});
+    if (!seen[s] && areas.buried > 0.5 * areas.given) buried.push_back(Index(s));
+  }
+  if (buried.empty()) return;
+  for (std::string& reason : whyDropped(scene, weld, buried)) {
+    report.notes.push_back({Severity::loud, std::move(reason)});
   }
 }
 
@@ -128,6 +130,7 @@ class Attempt {
   Attempt(const Scene& scene, const MeshOptions& options, const std::vector<Handling>& handling,
           MeshReport report, Progress& progress)
       : scene_(scene),
+        weld_(options.weld),
         report_(std::move(report)),
         progress_(progress),
         input_(cleanFaces(scene, options, handling, report_)) {}
@@ -143,6 +146,7 @@ class Attempt {
   std::vector<Index> merge(CoarseComplex& complex);
 
   const Scene& scene_;
+  double weld_;
   MeshReport report_;
   Progress& progress_;
   InputFaces input_;
@@ -184,7 +188,7 @@ std::vector<Index> Attempt::merge(CoarseComplex& complex) {
       mergeCells(scene_, input_, planes_, sheets_, edges_, arrangement_, visible, report_, broken);
   addUncut(scene_, input_, complex, report_);
   noteHandling(input_, report_);
-  noteBuriedSurfaces(complex, report_);
+  noteBuriedSurfaces(complex, scene_, weld_, report_);
   return broken;
 }
 

@@ -190,15 +190,17 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
          set: Union[str, Sequence[str]] = (),
          materials_file: Union[None, str, "os.PathLike[str]"] = None,
          one_sided: Union[str, Sequence[str]] = (), two_sided: Union[str, Sequence[str]] = (),
+         flip: Union[str, Sequence[str]] = (), without: Union[str, Sequence[str]] = (),
          sky: Any = None) -> Scene:
     """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
 
     unit: mm, cm, m, in or ft (default metres). vertex_colours: off, linear or srgb, how those of
     formats that do not say it count as reflectance. set: "NAME.PROPERTY=VALUE" each, with PROPERTY
-    reflectance, emission (W/m^2), radiance (W/m^2/sr) or tint. one_sided, two_sided: names of
-    materials, objects or surfaces, or "all". Each of the three is a list, or one text. sky:
-    radiance, W/m^2/sr, one number or three. The options are those of the command line. What was
-    repaired is in Scene.notes, and said by UserWarnings.
+    reflectance, emission (W/m^2), radiance (W/m^2/sr) or tint. NAME, and those of one_sided,
+    two_sided, flip (turned over) and without (left out), are names of materials, objects or
+    surfaces, patterns ("*wall*"), or "all". Each of the five is a list, or one text. sky: radiance,
+    W/m^2/sr, one number or three. The options are those of the command line. What was repaired is
+    in Scene.notes, and said by UserWarnings.
 
     The scene's arrays are views of what was read, no copies.
 
@@ -212,6 +214,7 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
                    vertex_colours=vertex_colours,
                    textures=textures, set=texts("set", set), materials_file=materials_path,
                    one_sided=texts("one_sided", one_sided), two_sided=texts("two_sided", two_sided),
+                   flip=texts("flip", flip), without=texts("without", without),
                    sky=None if sky is None else _colour("sky", sky))
     scene = Scene._of(_core.load(path_text("path", path), options))
     tell(scene.notes)

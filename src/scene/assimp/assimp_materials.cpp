@@ -88,11 +88,9 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number,
   Material material = defaultMaterial(name, options_);
   const std::optional<Vec3> diffuse = colour(given, "$clr.diffuse");
   has_colour_ = diffuse.has_value();
-  material.reflectance = diffuse.value_or(material.reflectance);
+  material.reflectance = settledReflectance(diffuse.value_or(material.reflectance), name, ignored_);
   const Vec3 radiance = colour(given, "$clr.emissive").value_or(Vec3(0.0));
-  checkReflectance(scene_.file, material.name, material.reflectance);
-  checkEmission(scene_.file, material.name, radiance);
-  if (options_.kd_is_srgb) {
+  if (options_.kd_is_srgb && isReflectance(material.reflectance)) {
     for (int band = 0; band < 3; ++band) {
       material.reflectance[band] = linearFromSrgb(material.reflectance[band]);
     }
@@ -106,7 +104,14 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number,
   float opacity = 1;
   if (library_.getMaterialFloatArray(&given, AI_MATKEY_OPACITY, &opacity, nullptr) == AI_SUCCESS &&
       opacity < 1) {
-    ignored_.add("transparency (opacity) is not used, material", material.name, Severity::warning);
+    ignored_.add(kSolidFeature, material.name, Severity::warning);
+  }
+  if (library_.getMaterialTextureCount(&given, aiTextureType_OPACITY) > 0) {
+    ignored_.add(kMaskFeature, material.name, Severity::warning);
+  }
+  for (const aiTextureType bumps : {aiTextureType_NORMALS, aiTextureType_HEIGHT}) {
+    if (library_.getMaterialTextureCount(&given, bumps) == 0) continue;
+    ignored_.add("normal and bump maps are not used, material", material.name);
   }
   material.texture = texture(given, material.name);
   const bool lacks_texture = options_.textures && material.texture == kNone &&
@@ -114,9 +119,13 @@ Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number,
   if (lacks_texture && (material.reflectance == Vec3(0.0) || material.reflectance == Vec3(1.0))) {
     replaceStandIn(material, material.name, "colour", options_, ignored_);
   }
-  if (library_.getMaterialTextureCount(&given, aiTextureType_EMISSIVE) > 0) {
-    ignored_.add("emissive textures of this format are not read, the colour alone counts",
-                 material.name, Severity::warning);
+  const bool glows = library_.getMaterialTextureCount(&given, aiTextureType_EMISSIVE) > 0;
+  if (glows && options_.textures) {
+    ignored_.add(
+        "emission textures of this format are not read; they EMIT NOTHING (--set NAME.radiance "
+        "gives them one all over), material",
+        material.name, Severity::loud);
+    material.emission = Vec3(0.0);
   }
   return material;
 }
@@ -154,7 +163,7 @@ Index AssimpMaterialReader::texture(const aiMaterial& given, const std::string& 
   }
   const std::string name = path.C_Str();
   const auto unusable = [&](const std::string& problem) {
-    noteUnusedTexture(name, problem, "colour", material, ignored_);
+    noteUnusedTexture(name, problem, TextureUse::reflectance, "colour", material, ignored_);
     return kNone;
   };
   if (mapping != aiTextureMapping_UV) return unusable("is not mapped by coordinates");

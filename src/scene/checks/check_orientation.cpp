@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "scene/checks/checks.h"
+#include "scene/surface_names.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -54,12 +55,16 @@ Containment SceneChecks::placeOf(const Vec3& point, const ConnectedPart& outer) 
 Containment SceneChecks::placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const {
   if (!boxContains(outer, inner, faces_.tolerance)) return Containment::outside;
   for (const Index f : inner.faces) {
-    Vec3 middle{0.0};
-    for (const Index corner : faces_.face(f)) middle += faces_.points[corner];
-    const Containment place = placeOf(middle / double(faces_.face(f).size()), outer);
+    const Containment place = placeOf(middleOf(f), outer);
     if (place != Containment::on) return place;
   }
   return Containment::on;
+}
+
+Vec3 SceneChecks::middleOf(std::size_t face) const {
+  Vec3 sum{0.0};
+  for (const Index corner : faces_.face(face)) sum += faces_.points[corner];
+  return sum / double(std::max<std::size_t>(1, faces_.face(face).size()));
 }
 
 bool SceneChecks::closed() const { return topology_.closed || enclosed(); }
@@ -85,6 +90,7 @@ bool SceneChecks::enclosed() const {
 void SceneChecks::reportOrientation(SceneInfo& info) const {
   reportFlippedFaces(info);
   reportInsideOut(info);
+  reportLoneShell(info);
 }
 
 void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
@@ -100,8 +106,10 @@ void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
     info.problems.push_back(
         {Severity::warning,
          fmt::format("{}: {} of {} faces turn their backs where their neighbours show the front: "
-                     "flip their normals, or --two-sided",
-                     scene_.surfaces[s].name, flipped[s], info.surfaces[s].faces)});
+                     "{}, or --two-sided",
+                     scene_.surfaces[s].name, flipped[s], info.surfaces[s].faces,
+                     flipped[s] == info.surfaces[s].faces ? flipOption({scene_.surfaces[s].name}, 0)
+                                                          : "flip their normals in the file")});
   }
   for (const ConnectedPart& part : topology_.parts) {
     if (part.orientable) continue;
@@ -114,10 +122,52 @@ void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
 
 void SceneChecks::reportInsideOut(SceneInfo& info) const {
   for (const ConnectedPart& part : topology_.parts) {
-    const bool one_sided = std::any_of(part.faces.begin(), part.faces.end(),
-                                       [&](Index f) { return !materialOf(f).two_sided; });
-    if (part.closed && part.volume != 0 && one_sided) reportPart(part, info);
+    if (part.closed && part.volume != 0 && isOneSided(part)) reportPart(part, info);
   }
+}
+
+bool SceneChecks::isOneSided(const ConnectedPart& part) const {
+  return std::any_of(part.faces.begin(), part.faces.end(),
+                     [&](Index f) { return !materialOf(f).two_sided; });
+}
+
+/// Notes a solid that is all there is, which may be meant as a room.
+void SceneChecks::reportLoneShell(SceneInfo& info) const {
+  if (topology_.parts.size() != 1 || !scene_.cameras.empty()) return;
+  const ConnectedPart& part = topology_.parts.front();
+  if (!part.closed || !(part.volume > 0) || !isOneSided(part)) return;
+  info.problems.push_back(
+      {scene_.sky == Vec3(0.0) ? Severity::warning : Severity::info,
+       fmt::format("{}: closed, faces outwards and is all there is: nothing inside sees anything; "
+                   "if it is a room, turn it over, {}",
+                   namesOf(part), flipOption(surfacesOf(part), scene_.surfaces.size()))});
+}
+
+std::vector<std::uint8_t> SceneChecks::turnedSurfaces() const {
+  std::vector<double> balance(scene_.surfaces.size(), 0.0);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const double area = glm::length(faces_.area_vector[f]);
+    balance[scene_.face_surface[f]] += topology_.flipped[f] != 0 ? area : -area;
+  }
+  std::vector<std::uint8_t> turned(balance.size(), 0);
+  std::ranges::transform(balance, turned.begin(), [](double b) { return b > 0 ? 1 : 0; });
+  return turned;
+}
+
+std::vector<std::string> SceneChecks::solidAround(Index surface) const {
+  const auto first = std::ranges::find(scene_.face_surface, surface);
+  if (first == scene_.face_surface.end()) return {};
+  const auto f = std::size_t(first - scene_.face_surface.begin());
+  const ConnectedPart* around = nullptr;
+  part_boxes_.query({middleOf(f), middleOf(f)}, [&](Index k) {
+    const ConnectedPart& part = topology_.parts[k];
+    const bool solid = part.closed && part.volume > 0 && isOneSided(part);
+    if (!solid || topology_.part_of[f] == k) return true;
+    const bool smaller = around == nullptr || part.volume < around->volume;
+    if (smaller && placeOf(middleOf(f), part) != Containment::outside) around = &part;
+    return true;
+  });
+  return around == nullptr ? std::vector<std::string>() : surfacesOf(*around);
 }
 
 std::vector<std::size_t> SceneChecks::partsNear(const ConnectedPart& part) const {
@@ -204,8 +254,9 @@ void SceneChecks::reportPart(const ConnectedPart& part, SceneInfo& info) const {
     info.problems.push_back(
         {Severity::loud,
          fmt::format("{}: closed, faces outwards and holds {}: a room with flipped normals? What "
-                     "lies inside a solid is dropped",
-                     names, joinNames(contents, 4))});
+                     "lies inside a solid is dropped; {} turns it over",
+                     names, joinNames(contents, 4),
+                     flipOption(surfacesOf(part), scene_.surfaces.size()))});
   }
 }
 

@@ -72,9 +72,9 @@ void SceneChecks::reportLight(SceneInfo& info) const {
   const bool sky_shines = scene_.sky != Vec3(0.0);
   if (!any && !(sky_is_seen && sky_shines)) {
     info.problems.push_back(
-        {Severity::loud,
-         fmt::format("no surface emits light{}: the result will be dark; make one a lamp, --set "
-                     "'{}.radiance=10'{}",
+        {Severity::info,
+         fmt::format("no surface emits light{}: for light, make one a lamp, --set "
+                     "'{}.radiance=10'{}; heat takes temperatures instead",
                      sky_shines ? " and the sky does not shine in" : "", likelyLamp(scene_),
                      sky_is_seen ? ", or let the sky shine in, --sky 1" : "")});
   }
@@ -165,11 +165,10 @@ void SceneChecks::reportFaces(SceneInfo& info) const {
 }
 
 std::vector<std::string> SceneChecks::surfacesOf(const ConnectedPart& part) const {
+  std::set<Index> surfaces;
+  for (const Index f : part.faces) surfaces.insert(scene_.face_surface[f]);
   std::vector<std::string> names;
-  std::set<Index> seen;
-  for (const Index f : part.faces) {
-    if (seen.insert(scene_.face_surface[f]).second) names.push_back(surfaceOf(f));
-  }
+  for (const Index s : surfaces) names.push_back(scene_.surfaces[s].name);
   return names;
 }
 

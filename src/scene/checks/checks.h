@@ -19,6 +19,11 @@ namespace radiosity {
 /// Names materials that return all light, by reflectance alone; none: nothing.
 std::optional<Note> whiteMaterials(const Scene& scene);
 
+/// Why the mesh has nothing of the `dropped` surfaces, which see nothing: a text each, with the
+/// cure. `weld`: coincidence, as a fraction of the scene's diagonal.
+std::vector<std::string> whyDropped(const Scene& scene, double weld,
+                                    std::span<const Index> dropped);
+
 class SceneChecks {
  public:
   SceneChecks(const Scene& scene, const WeldedFaces& faces);
@@ -41,16 +46,23 @@ class SceneChecks {
   /// Notes overlapping faces of different surfaces in one plane.
   void reportOverlaps(SceneInfo& info) const;
 
+  /// S, 1: most of its area is wound against the part that it belongs to.
+  std::vector<std::uint8_t> turnedSurfaces() const;
+  /// The surfaces of the smallest solid in or on which a surface begins: a closed part that is
+  /// one-sided and turned outward. Empty: there is none.
+  std::vector<std::string> solidAround(Index surface) const;
+
  private:
   const Material& materialOf(Index face) const { return scene_.materialOf(face); }
   const std::string& surfaceOf(Index face) const {
     return scene_.surfaces[scene_.face_surface[face]].name;
   }
   bool emits(Index face) const { return materialOf(face).emission != Vec3(0.0); }
-  /// The surfaces of a part's faces, each once.
+  /// The surfaces of a part's faces, in the order of the scene.
   std::vector<std::string> surfacesOf(const ConnectedPart& part) const;
   /// Their names: "a/b, c/d".
   std::string namesOf(const ConnectedPart& part) const;
+  Vec3 middleOf(std::size_t face) const;
   Containment placeOf(const Vec3& point, const ConnectedPart& outer) const;
   Containment placeOf(const ConnectedPart& inner, const ConnectedPart& outer) const;
   /// The parts whose boxes meet that of `part`, ascending.
@@ -67,6 +79,8 @@ class SceneChecks {
   void reportFlippedFaces(SceneInfo& info) const;
   void reportInsideOut(SceneInfo& info) const;
   void reportPart(const ConnectedPart& part, SceneInfo& info) const;
+  void reportLoneShell(SceneInfo& info) const;
+  bool isOneSided(const ConnectedPart& part) const;
 
   const Scene& scene_;
   const WeldedFaces& faces_;

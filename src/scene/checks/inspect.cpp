@@ -8,17 +8,19 @@
 
 #include "scene/checks/checks.h"
 #include "scene/checks/far_apart.h"
+#include "scene/surface_names.h"
+#include "scene/text.h"
 
 namespace radiosity {
 
 namespace {
 
-void measureBox(const Scene& scene, SceneInfo& info) {
-  info.lower = Vec3(std::numeric_limits<double>::infinity());
-  info.upper = -info.lower;
+void measureBox(const Scene& scene, Vec3& lower, Vec3& upper) {
+  lower = Vec3(std::numeric_limits<double>::infinity());
+  upper = -lower;
   for (const Index vertex : scene.corners) {
-    info.lower = glm::min(info.lower, scene.vertices[vertex]);
-    info.upper = glm::max(info.upper, scene.vertices[vertex]);
+    lower = glm::min(lower, scene.vertices[vertex]);
+    upper = glm::max(upper, scene.vertices[vertex]);
   }
 }
 
@@ -47,7 +49,7 @@ SceneInfo inspectScene(const Scene& scene, double weld) {
   if (scene.faceCount() == 0) {
     throw InputError(scene.file + ": no faces; export the scene with its meshes as polygons");
   }
-  measureBox(scene, info);
+  measureBox(scene, info.lower, info.upper);
   const WeldedFaces faces = weldFaces(scene, info.lower, info.upper, weld);
   measureSurfaces(scene, faces, info);
   const SceneChecks checks(scene, faces);
@@ -60,6 +62,38 @@ SceneInfo inspectScene(const Scene& scene, double weld) {
   checks.reportOrientation(info);
   checks.reportOverlaps(info);
   return info;
+}
+
+std::vector<std::string> whyDropped(const Scene& scene, double weld,
+                                    std::span<const Index> dropped) {
+  Vec3 lower;
+  Vec3 upper;
+  measureBox(scene, lower, upper);
+  const WeldedFaces faces = weldFaces(scene, lower, upper, weld);
+  const SceneChecks checks(scene, faces);
+  const std::vector<std::uint8_t> turned = checks.turnedSurfaces();
+  std::vector<std::string> reasons;
+  for (const Index s : dropped) {
+    const std::string& name = scene.surfaces[s].name;
+    const std::vector<std::string> solid = checks.solidAround(s);
+    if (!solid.empty()) {
+      reasons.push_back(
+          fmt::format("{}: lies wholly inside the closed solid {} and was dropped; if that is a "
+                      "room, its faces are turned outward: turn it over, {}",
+                      name, joinNames(solid, 4), flipOption(solid, scene.surfaces.size())));
+    } else if (turned[s] != 0) {
+      reasons.push_back(
+          fmt::format("{}: its faces are turned against their neighbours and look into a closed, "
+                      "dark space, so it was dropped; turn it over, {}",
+                      name, flipOption({name}, 0)));
+    } else {
+      reasons.push_back(fmt::format(
+          "{}: lies wholly in a dark hollow or on other surfaces and was dropped; if that "
+          "is a room, its faces are turned outward",
+          name));
+    }
+  }
+  return reasons;
 }
 
 }  // namespace radiosity

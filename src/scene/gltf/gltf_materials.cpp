@@ -47,7 +47,7 @@ class GltfMaterialReader {
   Index texture(const tinygltf::TextureInfo& info, TextureUse use, const std::string& material);
   bool repeats(const tinygltf::Texture& texture, const std::string& material);
   static TexcoordSource texcoords(const tinygltf::TextureInfo& info);
-  Index emissionTexture(const tinygltf::Material& gltf, const Material& material);
+  Index emissionTexture(const tinygltf::Material& gltf, Material& material);
   void noteIgnored(const tinygltf::Material& gltf, const std::string& name);
 
   const GltfFile& file_;
@@ -79,8 +79,7 @@ Material GltfMaterialReader::convert(const tinygltf::Material& gltf, const std::
   material.name = name;
   material.two_sided = gltf.doubleSided;
   const Diffuse diffuse = diffuseOf(gltf, name);
-  material.reflectance = diffuse.factor;
-  checkReflectance(file_.path, name, material.reflectance);
+  material.reflectance = settledReflectance(diffuse.factor, name, ignored_);
   material.emission = emission(gltf, name);
   if (diffuse.texture.index >= 0) {
     if (options_.textures) {
@@ -127,9 +126,8 @@ GltfMaterialReader::Diffuse GltfMaterialReader::diffuseOf(const tinygltf::Materi
 }
 
 /// The emission texture, if it can be used: a corner of a face has only one pair of texture
-/// coordinates.
-Index GltfMaterialReader::emissionTexture(const tinygltf::Material& gltf,
-                                          const Material& material) {
+/// coordinates. Otherwise the material emits nothing.
+Index GltfMaterialReader::emissionTexture(const tinygltf::Material& gltf, Material& material) {
   if (gltf.emissiveTexture.index < 0 || material.emission == Vec3(0.0)) return kNone;
   if (!options_.textures) {
     ignored_.add("textures are off; the factor alone counts, material", material.name);
@@ -139,12 +137,15 @@ Index GltfMaterialReader::emissionTexture(const tinygltf::Material& gltf,
   if (!alone &&
       !(texcoords(gltf.emissiveTexture) == texcoords(diffuseOf(gltf, material.name).texture))) {
     ignored_.add(
-        "the emissive texture has other coordinates than the base colour and is not used, "
-        "its factor alone emits, material",
-        material.name, Severity::warning);
+        "the emission texture has other coordinates than the base colour and is not used; it EMITS "
+        "NOTHING (--set NAME.radiance gives it one all over), material",
+        material.name, Severity::loud);
+    material.emission = Vec3(0.0);
     return kNone;
   }
-  return texture(gltf.emissiveTexture, TextureUse::emission, material.name);
+  const Index found = texture(gltf.emissiveTexture, TextureUse::emission, material.name);
+  if (found == kNone) material.emission = Vec3(0.0);
+  return found;
 }
 
 /// Radiance is emissiveFactor x KHR_materials_emissive_strength; exitance is pi times that.
@@ -160,10 +161,7 @@ Vec3 GltfMaterialReader::emission(const tinygltf::Material& gltf, const std::str
   if (extension != gltf.extensions.end() && extension->second.Has("emissiveStrength")) {
     strength = extension->second.Get("emissiveStrength").GetNumberAsDouble();
   }
-  const Vec3 exitance = std::numbers::pi * strength * factor;
-  checkEmission(file_.path, name, factor);
-  checkEmission(file_.path, name, exitance);
-  return exitance;
+  return std::numbers::pi * strength * factor;
 }
 
 Index GltfMaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse use,
@@ -171,7 +169,7 @@ Index GltfMaterialReader::texture(const tinygltf::TextureInfo& info, TextureUse 
   const std::string what = "material " + material;
   const tinygltf::Texture& gltf = file_.at(file_.model.textures, info.index, "texture", what);
   const auto unusable = [&](const std::string& image, const std::string& problem) {
-    noteUnusedTexture(image, problem, "factor", material, ignored_);
+    noteUnusedTexture(image, problem, use, "factor", material, ignored_);
     return kNone;
   };
   const int source = imageOf(gltf);
@@ -231,13 +229,19 @@ void GltfMaterialReader::noteIgnored(const tinygltf::Material& gltf, const std::
   if (pbr.metallicFactor != 0 && !gltf.extensions.contains(kSpecularGlossiness)) {
     ignored_.add("metalness is not used (glTF's default is 1), material", name);
   }
-  if (gltf.alphaMode != "OPAQUE") {
-    ignored_.add("transparency (alphaMode) is not used, material", name, Severity::warning);
+  if (pbr.roughnessFactor != 1 || pbr.metallicRoughnessTexture.index >= 0) {
+    ignored_.add("roughness is not used, all is matt, material", name);
   }
+  if (gltf.normalTexture.index >= 0) ignored_.add("normal maps are not used, material", name);
+  if (gltf.occlusionTexture.index >= 0) ignored_.add("occlusion maps are not used, material", name);
+  bool transparent = gltf.alphaMode == "BLEND";
   for (const auto& [extension, value] : gltf.extensions) {
+    transparent = transparent || extension == "KHR_materials_transmission";
     if (isSupportedGltfExtension(extension)) continue;
     ignored_.add(extension + " is not used, material", name);
   }
+  if (transparent) ignored_.add(kSolidFeature, name, Severity::warning);
+  if (gltf.alphaMode == "MASK") ignored_.add(kMaskFeature, name, Severity::warning);
 }
 
 }  // namespace

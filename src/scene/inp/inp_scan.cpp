@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -61,8 +62,25 @@ class InpScanner {
   FeatureNotes notes_;
 };
 
+/// Whether a text begins like input: with a keyword, a comment or numbers. *INCLUDE may name any
+/// file, whose words must not be quoted.
+bool looksLikeInp(std::string_view text) {
+  const std::string_view line =
+      trimmed(text.substr(0, text.find('\n', text.find_first_not_of(" \t\r\n"))));
+  if (line.starts_with('*')) {
+    return line.size() > 1 &&
+           (line[1] == '*' || std::isalpha(static_cast<unsigned char>(line[1])) != 0);
+  }
+  return line.empty() || parseNumber(inpFields(line)[0]).has_value();
+}
+
 void InpScanner::file(const std::string& path, int depth) {
   const std::string content = readWholeFile(path);
+  if (depth > 0 && !looksLikeInp(content)) {
+    throw InputError(path +
+                     ": begins with neither a keyword nor numbers, so it is no input of "
+                     "CalculiX or Abaqus; correct the *INCLUDE");
+  }
   if (content.find('\0') != std::string::npos) {
     throw InputError(path + ": is not a text file; export it as CalculiX or Abaqus input");
   }

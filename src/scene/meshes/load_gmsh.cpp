@@ -46,7 +46,7 @@ std::optional<ElementShape> gmshShape(long long type) {
 class GmshReader {
  public:
   GmshReader(const std::string& path, std::string_view content, const SceneOptions& options)
-      : cursor_(path, content), faces_(path, options) {}
+      : path_(path), cursor_(path, content), faces_(path, options) {}
 
   Scene read() {
     format();
@@ -83,6 +83,7 @@ class GmshReader {
   void addSides(const ElementShape& shape, std::span<const Side> sides, long long tag);
   bool isNewFace(const ElementShape& shape, long long entity);
 
+  const std::string& path_;
   MeshCursor cursor_;
   GroupedFaces faces_;
   FeatureNotes notes_;
@@ -97,7 +98,19 @@ class GmshReader {
 };
 
 void GmshReader::format() {
-  if (cursor_.nextLine() != "$MeshFormat") {
+  const std::string_view first = cursor_.nextLine();
+  if (first == "$NOD" || first == "$PARA") {
+    throw InputError(fmt::format(
+        "{0}: is a Gmsh mesh of format 1, which is not read; convert it to 4.1: gmsh '{0}' -save "
+        "-format msh41 -o NEW.msh",
+        path_));
+  }
+  if (first.starts_with('(')) {
+    throw InputError(path_ +
+                     ": is a mesh of Fluent, not of Gmsh, which has the same extension; export it "
+                     "as STL, or as a .msh of Gmsh");
+  }
+  if (first != "$MeshFormat") {
     cursor_.fail("is no Gmsh mesh, which begins with $MeshFormat; save it as .msh");
   }
   const std::string_view version = cursor_.word();

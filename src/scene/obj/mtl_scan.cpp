@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "base/lower_case.h"
 #include "base/parse.h"
@@ -86,6 +87,14 @@ MtlMap mapOf(std::string_view text) {
   return map;
 }
 
+bool definesMaterial(std::string_view text) {
+  bool any = false;
+  forEachStatement(text, [&](std::size_t, std::string_view statement) {
+    any = any || splitWords(statement)[0] == "newmtl";
+  });
+  return any;
+}
+
 class MtlScanner {
  public:
   MtlScanner(const std::string& file, FeatureNotes& ignored) : file_(file), ignored_(ignored) {}
@@ -94,10 +103,12 @@ class MtlScanner {
   std::vector<MtlMaterial> finish() { return std::move(materials_); }
 
  private:
+  std::string place() const { return fmt::format("{}:{}", file_, line_); }
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", file_, line_, what));
+    throw InputError(fmt::format("{}: {}", place(), what));
   }
   Vec3 colour(std::string_view keyword, const std::vector<std::string_view>& words) const;
+  double value(std::string_view word, std::string_view keyword) const;
   std::vector<double> values(const std::vector<std::string_view>& words) const;
   void noteIgnored(std::string_view keyword, const std::vector<double>& values);
 
@@ -119,7 +130,7 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
       ignored_.add(fmt::format("newmtl names no material, it is called {}, line", kUnnamed),
                    std::to_string(line), Severity::warning);
     }
-    materials_.push_back({std::move(name), line, {}, {}, {}, {}});
+    materials_.push_back({.name = std::move(name), .line = line});
     return;
   }
   if (materials_.empty()) {
@@ -130,15 +141,18 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
   const std::string known = lowerCase(keyword);
   MtlMaterial& material = materials_.back();
   if (known == "kd") {
-    material.reflectance = colour(keyword, words);
-    checkReflectance(fmt::format("{}:{}", file_, line), material.name, *material.reflectance);
+    const Vec3 given = colour(keyword, words);
+    material.reflectance = settledReflectance(given, material.name, ignored_);
+    if (!isReflectance(*material.reflectance)) material.out_of_range = place();
   } else if (known == "ke") {
     material.radiance = colour(keyword, words);
-    checkEmission(fmt::format("{}:{}", file_, line), material.name, *material.radiance);
+    if (!isEmission(*material.radiance)) material.out_of_range = place();
   } else if (known == "map_kd") {
     material.reflectance_map = mapOf(text.substr(keyword.size()));
   } else if (known == "map_ke") {
     material.radiance_map = mapOf(text.substr(keyword.size()));
+  } else if (known == "map_d") {
+    ignored_.add(kMaskFeature, material.name, Severity::warning);
   } else if (isMap(keyword)) {
     ignored_.add(fmt::format("texture {} is not used, material", keyword), material.name);
   } else if (std::find(kNumeric.begin(), kNumeric.end(), keyword) != kNumeric.end()) {
@@ -155,16 +169,21 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
   }
 }
 
+/// NaN for what exporters write for a number that is none, which --set may replace.
+double MtlScanner::value(std::string_view word, std::string_view keyword) const {
+  const std::optional<double> number = parseNumber(word);
+  if (number) return *number;
+  const std::string letters = lowerCase(word.substr(word.starts_with('-') ? 1 : 0));
+  if (letters.starts_with("nan") || letters.starts_with("inf")) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  fail(fmt::format("material {}: `{}` is not a number; write {} with decimal points",
+                   materials_.back().name, word, keyword));
+}
+
 std::vector<double> MtlScanner::values(const std::vector<std::string_view>& words) const {
   std::vector<double> result;
-  for (const std::string_view word : argumentsOf(words)) {
-    const std::optional<double> value = parseNumber(word);
-    if (!value) {
-      fail(fmt::format("material {}: `{}` is not a finite number; write {} with decimal points",
-                       materials_.back().name, word, words[0]));
-    }
-    result.push_back(*value);
-  }
+  for (const std::string_view word : argumentsOf(words)) result.push_back(value(word, words[0]));
   return result;
 }
 
@@ -188,9 +207,16 @@ void MtlScanner::noteIgnored(std::string_view keyword, const std::vector<double>
   }
   const bool clear = (keyword == "d" && any([](double v) { return v < 1; })) ||
                      (keyword == "Tr" && any([](double v) { return v > 0; }));
-  if (clear) ignored_.add("transparency (d, Tr) is not used, material", name, Severity::warning);
-  if (keyword == "Pm" && any([](double v) { return v != 0; })) {
-    ignored_.add("metalness (Pm) is not used, material", name);
+  if (clear) ignored_.add(kSolidFeature, name, Severity::warning);
+  const std::pair<std::string_view, std::string_view> features[] = {
+      {"Pr", "roughness (Pr)"},
+      {"Pm", "metalness (Pm)"},
+      {"Ps", "sheen (Ps)"},
+      {"Pc", "clearcoat (Pc)"},
+  };
+  for (const auto& [statement, feature] : features) {
+    if (keyword != statement || !any([](double v) { return v != 0; })) continue;
+    ignored_.add(fmt::format("{} is not used, material", feature), name);
   }
   if (keyword == "Tf" && any([](double v) { return v != 0 && v != 1; })) {
     ignored_.add("transmission (Tf) is not used, material", name);
@@ -204,6 +230,7 @@ std::vector<MtlMaterial> scanMtl(const std::string& file, std::string_view text,
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(file + ": is not a text file; export the materials as MTL");
   }
+  if (!definesMaterial(text)) return {};
   MtlScanner scanner(file, ignored);
   forEachStatement(text, [&](std::size_t line, std::string_view s) { scanner.statement(line, s); });
   return scanner.finish();

@@ -81,7 +81,10 @@ void ObjMaterialReader::readLibrary(const fs::path& path) {
   const std::string file = path.string();
   const std::vector<MtlMaterial> scanned = scanMtl(file, readWholeFile(file), ignored_);
   if (scanned.empty()) {
-    note(Severity::warning, fmt::format("{}: defines no material", file));
+    note(Severity::warning,
+         fmt::format("{}: defines no material (newmtl), so it is no MTL file; give materials by "
+                     "--set or a JSON materials file",
+                     file));
     return;
   }
   for (const MtlMaterial& mtl : scanned) {
@@ -120,17 +123,22 @@ Material ObjMaterialReader::convert(const MtlMaterial& mtl, const fs::path& fold
     replaceStandIn(material, mtl.name, "Kd", options_, ignored_);
   } else if (mtl.reflectance) {
     material.reflectance = *mtl.reflectance;
-    if (options_.kd_is_srgb) {
+    if (options_.kd_is_srgb && isReflectance(material.reflectance)) {
       for (int b = 0; b < 3; ++b) material.reflectance[b] = linearFromSrgb(material.reflectance[b]);
     }
   } else {
     note(Severity::info, fmt::format("material {} gives no Kd: reflectance {}", mtl.name,
                                      options_.default_reflectance));
   }
-  if (mtl.radiance) material.emission = std::numbers::pi * *mtl.radiance;
+  const bool lacks_map =
+      mtl.radiance_map && options_.textures && material.emission_texture == kNone;
+  if (mtl.radiance && !lacks_map) material.emission = std::numbers::pi * *mtl.radiance;
   if (material.emission_texture != kNone && material.emission == Vec3(0.0)) {
     material.emission = Vec3(std::numbers::pi);
     noteTextureAlone("Ke", mtl.name);
+  }
+  if (!mtl.out_of_range.empty() && !mayMend(options_)) {
+    requireMaterial(mtl.out_of_range, material);
   }
   return material;
 }
@@ -153,10 +161,8 @@ Index ObjMaterialReader::texture(const std::string& material, const char* keywor
                  Severity::warning);
   }
   if (map.file.empty()) {
-    note(Severity::warning,
-         fmt::format("material {}: {} names no file that can be told from its options; the "
-                     "factor alone counts",
-                     material, keyword));
+    noteUnusedTexture(keyword, "names no file that can be told from its options", use, "factor",
+                      material, ignored_);
     return kNone;
   }
   const std::string path = findImage(folder.string(), map.file, ignored_);
@@ -169,7 +175,7 @@ Index ObjMaterialReader::texture(const std::string& material, const char* keywor
   }
   const std::string problem = loaded.problemAs(use);
   if (problem.empty()) return loaded.index;
-  noteUnusedTexture(path, problem, "factor", material, ignored_);
+  noteUnusedTexture(path, problem, use, "factor", material, ignored_);
   return kNone;
 }
 
