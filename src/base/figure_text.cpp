@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <iterator>
 
 namespace radiosity {
@@ -27,6 +28,12 @@ std::string bytesText(std::size_t bytes) {
   if (unit == 0) return fmt::format("{} B", bytes);
   return value < 100 ? fmt::format("{:.1f} {}", value, kUnits[unit])
                      : fmt::format("{:.0f} {}", value, kUnits[unit]);
+}
+
+double areaFigure(double area) {
+  const std::string digits = fmt::format("{:.12g}", area);
+  std::from_chars(digits.data(), digits.data() + digits.size(), area);
+  return area;
 }
 
 }  // namespace radiosity

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numeric>
 #include <variant>
 
@@ -132,6 +133,20 @@ std::string columnKey(std::string band) {
   return fmt::format("l2_{}_percent", band);
 }
 
+/// A difference relative to A, times `scale`; in words where A is 0 and B is not.
+std::string relativeText(double value, double scale = 1, int digits = 6) {
+  return std::isfinite(value) ? numberText(scale * value, digits) : "A is 0";
+}
+
+void reportRelative(Report& report, const std::string& key, const std::string& label, double value,
+                    const std::string& beside = {}) {
+  if (std::isfinite(value)) {
+    report.number(key, label, value, beside);
+  } else {
+    report.text(key, label, relativeText(value) + (beside.empty() ? "" : " " + beside));
+  }
+}
+
 void reportSurfaces(Report& report, const Comparison& c) {
   const int bands = int(c.sums.a.size());
   std::vector<std::vector<std::string>> rows;
@@ -144,7 +159,9 @@ void reportSurfaces(Report& report, const Comparison& c) {
     };
     std::vector<std::string> row = {s.name.empty() ? "(unnamed)" : s.name, numberText(s.given, 4),
                                     percent(sums.area, s.given), mean(sums.a), mean(sums.b)};
-    for (int b = -1; b < bands; ++b) row.push_back(fmt::format("{:.3g}", 100 * sums.relativeL2(b)));
+    for (int b = -1; b < bands; ++b) {
+      row.push_back(relativeText(sums.relativeL2(b), 100, 3));
+    }
     rows.push_back(std::move(row));
   }
   std::vector<Report::Column> columns = {
@@ -161,11 +178,12 @@ void reportSurfaces(Report& report, const Comparison& c) {
 void reportHeadline(Report& report, const Comparison& c) {
   std::string beside;
   if (c.without_emitters) {
-    beside = fmt::format("without emitters {}", numberText(c.without_emitters->relativeL2()));
+    beside = fmt::format("without emitters {}", relativeText(c.without_emitters->relativeL2()));
   }
   const SurfaceDifference* worst = nullptr;
   for (const SurfaceDifference& s : c.surfaces) {
-    if (!(s.sums.area > 0)) continue;
+    // Where A is 0 no difference is relative to it: the largest one says how far B is off.
+    if (!(s.sums.area > 0) || !std::isfinite(s.sums.relativeL2())) continue;
     if (worst == nullptr || s.sums.relativeL2() > worst->sums.relativeL2()) worst = &s;
   }
   if (worst != nullptr) {
@@ -173,11 +191,11 @@ void reportHeadline(Report& report, const Comparison& c) {
                           worst->name.empty() ? "(unnamed)" : worst->name,
                           numberText(worst->sums.relativeL2()));
   }
-  report.number("relative_l2", "relative L2 difference", c.relativeL2(),
-                beside.empty() ? beside : "(" + beside + ")");
+  reportRelative(report, "relative_l2", "relative L2 difference", c.relativeL2(),
+                 beside.empty() ? beside : "(" + beside + ")");
   report.mute(true);
   if (c.without_emitters) {
-    report.number("relative_l2_without_emitters", "", c.without_emitters->relativeL2());
+    reportRelative(report, "relative_l2_without_emitters", "", c.without_emitters->relativeL2());
   }
   if (worst != nullptr) {
     report.text("worst_surface", "", worst->name);
@@ -201,8 +219,14 @@ void reportComparison(Report& report, const Comparison& c, bool pictures, bool r
   report.number("scale", "B was multiplied by", c.scale);
   std::vector<double> by_band;
   for (std::size_t b = 0; b < count; ++b) by_band.push_back(c.relativeL2(int(b)));
-  report.bands("relative_l2_bands", fmt::format("relative L2 by band ({})", bandsText(int(count))),
-               by_band, "");
+  const std::string label = fmt::format("relative L2 by band ({})", bandsText(int(count)));
+  if (std::ranges::all_of(by_band, [](double value) { return std::isfinite(value); })) {
+    report.bands("relative_l2_bands", label, by_band, "");
+  } else {
+    std::string words;
+    for (const double value : by_band) words += (words.empty() ? "" : ", ") + relativeText(value);
+    report.text("relative_l2_bands", label, words);
+  }
   report.number("fitted_scale", "best factor for B", c.fitted_scale);
   report.number("fitted_l2", "  would leave", c.fitted_l2);
   report.number("largest", "largest difference", std::abs(c.largest.b - c.largest.a), unit);

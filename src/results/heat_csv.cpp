@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/csv.h"
+#include "base/figure_text.h"
 #include "radiosity/results.h"
 #include "results/checked_file.h"
 
@@ -32,7 +33,7 @@ std::string commonColumns(int bands) {
 
 std::string commonCells(const HeatSolution& heat, std::size_t i, double area) {
   const auto bands = std::size_t(heat.bands);
-  std::string cells = fmt::format("{},{},{},{}", area, cell(heat.temperature[i]),
+  std::string cells = fmt::format("{},{},{},{}", areaFigure(area), cell(heat.temperature[i]),
                                   cell(heat.net_flux[i]), cell(heat.convection[i]));
   for (const std::vector<double>* values : {&heat.radiosity, &heat.irradiance}) {
     for (std::size_t b = 0; b < bands; ++b)
@@ -49,10 +50,11 @@ void writeHeatTable(const std::string& path, std::span<const SurfaceHeat> surfac
       "surface,area_m2,temperature_K,lowest_K,highest_K,radiosity_W_per_m2,irradiance_W_per_m2,"
       "irradiance_error_W_per_m2,net_flux_W_per_m2,radiated_W,convected_W\n");
   for (const SurfaceHeat& s : surfaces) {
-    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csvField(s.name), cell(s.area),
-                           cell(s.temperature), cell(s.lowest), cell(s.highest), cell(s.radiosity),
-                           cell(s.irradiance), cell(s.irradiance_error.value_or(NAN)),
-                           cell(s.net_flux), cell(s.radiated), cell(s.convected)));
+    file.write(fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", csvField(s.name),
+                           areaFigure(s.area), cell(s.temperature), cell(s.lowest), cell(s.highest),
+                           cell(s.radiosity), cell(s.irradiance),
+                           cell(s.irradiance_error.value_or(NAN)), cell(s.net_flux),
+                           cell(s.radiated), cell(s.convected)));
   }
   file.commit();
 }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "base/figure_text.h"
 #include "results/checked_file.h"
 #include "tables/table_rows.h"
 
@@ -34,7 +35,8 @@ void writeWideCsv(CheckedFile& file, const NamedFactors& factors, Progress& prog
       factors, "writing the table", progress, [&](std::size_t a, const std::vector<double>& row) {
         fmt::memory_buffer line;
         const auto out = std::back_inserter(line);
-        fmt::format_to(out, "{},{}", csvField(labelOf(factors, a)), factors.matrix->area()[a]);
+        fmt::format_to(out, "{},{}", csvField(labelOf(factors, a)),
+                       areaFigure(factors.matrix->area()[a]));
         for (const double value : row) fmt::format_to(out, ",{}", value);
         const double sum =
             std::accumulate(row.begin(), row.end(), 0.0) + factors.sky[a] + factors.backs[a];
@@ -54,7 +56,7 @@ void writeLongCsv(CheckedFile& file, const NamedFactors& factors, Progress& prog
         fmt::memory_buffer lines;
         const auto out = std::back_inserter(lines);
         const std::string from = csvField(labelOf(factors, a));
-        const double area = factors.matrix->area()[a];
+        const double area = areaFigure(factors.matrix->area()[a]);
         for (std::size_t b = 0; b < row.size(); ++b) {
           if (factors.numbered && row[b] == 0) continue;
           fmt::format_to(out, "{},{},{},{}", from, csvField(labelOf(factors, b)), area, row[b]);

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "base/csv.h"
+#include "base/figure_text.h"
 #include "radiosity/matrix_files.h"
 #include "results/checked_file.h"
 
@@ -23,7 +24,7 @@ void writeLightCsv(const std::string& path, std::span<const std::string> names,
   for (std::size_t i = 0; i < names.size(); ++i) {
     fmt::memory_buffer line;
     const auto out = std::back_inserter(line);
-    fmt::format_to(out, "{},{},{}", i + 1, csvField(names[i]), area[i]);
+    fmt::format_to(out, "{},{},{}", i + 1, csvField(names[i]), areaFigure(area[i]));
     const double* radiosity = &solution.radiosity[i * bands];
     const double* irradiance = &solution.irradiance[i * bands];
     for (std::size_t b = 0; b < bands; ++b) fmt::format_to(out, ",{}", radiosity[b]);

@@ -225,6 +225,20 @@ class CompareHeadline(CliTest):
         self.assertEqual(c["worst_surface"], "room/wall")
         self.assertAlmostEqual(c["worst_surface_l2"], c["relative_l2_without_emitters"], delta=1e-12)
 
+    def test_where_a_is_dark_nothing_is_relative_to_it(self):
+        # Black walls send nothing back; what B sends is no number of times that.
+        self.run_program("solve", "box.obj", *SMALL, "--set", "wall.reflectance=0", "-o", "r.h5")
+        self.run_program("solve", "box.obj", *SMALL, "--set", "wall.reflectance=.4", "-o", "s.h5")
+        run = self.run_program("compare", "r.h5", "s.h5", "--report", "c.json")
+        self.assertNotRegex(run.out, r"\binf\b")
+        self.assertRegex(run.out, r"relative L2 difference +[\d.]+ \(without emitters A is 0; "
+                         r"worst surface ceiling/lamp: [\d.]+\)\n")
+        c = json.loads((self.folder / "c.json").read_text())["comparison"]
+        self.assertEqual(c["relative_l2_without_emitters"], "A is 0")
+        walls = next(row for row in c["surfaces"] if row["name"] == "room/wall")
+        self.assertEqual(walls["l2_percent"], "A is 0")
+        self.assertEqual(c["largest_on"], "room/wall")
+
 
 if __name__ == "__main__":
     sys.exit(unittest.main())

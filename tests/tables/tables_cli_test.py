@@ -98,6 +98,15 @@ class Tables(CliTest):
         printed = numpy.array([row[2:n + 2] for row in cells[2:]], dtype=float)
         numpy.testing.assert_allclose(printed, truth.factors, rtol=6e-6, atol=1e-12)
 
+    def test_areas_have_the_digits_that_are_meant(self):
+        # Sums of patches' areas: 4 m x 3 m are 12 m^2 and not 11.999999999999972.
+        (self.folder / "floor.obj").write_text("v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\n"
+                                               "o floor\nf 1 2 3 4\n")
+        for patches in (100, 250, 330):
+            self.run_program("factors", "floor.obj", "--patches", patches, "--between", "surfaces",
+                             "-o", "t.csv")
+            self.assertEqual(read_csv(self.folder / "t.csv")[1][0][1], "12")
+
     def test_long_tables_have_a_row_a_pair(self):
         self.run_program(*ROOM, "--layout", "long", "-o", "t.csv", "-o", "t.json", "-o", "t.h5",
                          "--sky-name", "open front")
