@@ -495,7 +495,9 @@ TEST(ExactStress, NoiseOnCornersLeavesNoPatchOfRounding) {
         f.matrix.forRow(i, [&](Index, double value) { ASSERT_GE(value, 0.0) << i; });
         // Without noise the largest is .004. A patch as thin as rounding has .1 to 2. (Gaps wider
         // than four coincidences are strips of their own, with errors of their own.)
-        if (noise < 2e-7) EXPECT_LT(f.error[i], 0.02) << i;
+        if (noise < 2e-7) {
+          EXPECT_LT(f.error[i], 0.02) << i;
+        }
         if (mesh.surface_names[mesh.surface[i]] != "block/block") continue;
         area += mesh.area[i];
         seen += mesh.area[i] * f.fronts[i];
