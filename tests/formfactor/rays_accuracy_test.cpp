@@ -94,6 +94,52 @@ TEST(RaysAccuracy, ARowWithoutHitsHasAnErrorFigure) {
   EXPECT_EQ(row.figure(), 0);
 }
 
+/// Rows of few hits are as far off as Poisson's distribution lets them be, whatever their
+/// replicates say.
+TEST(RaysAccuracy, AFewHitsDoNotTellTheError) {
+  RowAccuracy row;
+  row.rays = 1000;
+  EXPECT_TRUE(row.isUnknown());
+  EXPECT_NEAR(row.expectedError(), 0.003, 1e-5);  // the rule of three
+  row.hits = 4;
+  EXPECT_TRUE(row.isUnknown());
+  // Garwood's upper bounds for 4 hits: 9.15 at 95%, 11.60 at 99%.
+  EXPECT_NEAR(row.expectedError(), (9.154 - 4) / 1000, 1e-6);
+  EXPECT_NEAR(row.figure(), (11.605 - 4) / 1000, 1e-6);
+  row.hits = 1000;
+  EXPECT_FALSE(row.isUnknown());
+  EXPECT_EQ(row.expectedError(), 0);
+  row = {};
+  row.rays = 100 / kSeesNothing;
+  EXPECT_FALSE(row.isUnknown()) << "nothing is there to be seen";
+}
+
+/// Of rows with one entry that is hit a few times on average, 99% are within their figures.
+TEST(RaysAccuracy, FiguresHoldForRowsOfFewHits) {
+  constexpr double kRays = 500;
+  std::mt19937 random(9);
+  for (const double mean : {0.3, 1.0, 3.0, 10.0}) {
+    std::poisson_distribution<int> hits(mean / 2);
+    CommonError common;
+    std::vector<RowAccuracy> rows;
+    for (int k = 0; k < 2000; ++k) {
+      RayRow row;
+      row.rays = std::uint32_t(kRays);
+      row.columns = {1};
+      row.hits = {{std::uint32_t(hits(random)), std::uint32_t(hits(random))}};
+      rows.push_back(accuracyAlone(row, 2));
+      common.add(rows.back());
+    }
+    int above = 0;
+    for (const RowAccuracy& row : rows) {
+      const double off = std::abs(row.hits - mean) / (2 * kRays);
+      above += off > common.moderated(row).figure() ? 1 : 0;
+    }
+    // 1% and three standard deviations of 2,000 draws.
+    EXPECT_LE(above, 33) << mean;
+  }
+}
+
 TEST(RaysAccuracy, ForeseenVarianceFollowsHitsAndTheGainOfNets) {
   // Few hits of a small share: those of independent rays.
   const auto ofOneEnd = [](double factor, double hits) {

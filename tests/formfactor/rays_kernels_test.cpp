@@ -102,6 +102,16 @@ class RayKernelsTest : public testing::Test {
   RayOrigins roof_ = caster_.origins(0);
   RayOrigins floor_ = caster_.origins(caster_.fronts() - 1);
 
+  /// One for each frame, of different sizes: from the horizon up, to the zenith, and in between.
+  std::vector<DirectionWindow> windowsOfRoof() const {
+    std::vector<DirectionWindow> windows;
+    for (std::size_t k = 0; k < roof_.frames(); ++k) {
+      const double low = k % 3 == 0 ? 0.0 : k % 3 == 1 ? 0.9 : 0.4;
+      windows.push_back({low, k % 3 == 1 ? 1.0 : low + 0.3, 3 - double(k), k == 0 ? 0.1 : 2.5});
+    }
+    return windows;
+  }
+
   /// Aimed rays of roof and floor by turns, sent by Embree. Lanes from `lanes` on are not traced.
   RTCRayHit16 packet(const RayKernels& kernels, Rays& rays, std::size_t first, int lanes) {
     std::array<std::uint16_t, kRayLanes> order;
@@ -119,6 +129,33 @@ class RayKernelsTest : public testing::Test {
     return packet;
   }
 };
+
+/// Rays of each frame go into its window, spread evenly over elevations' squared sines and
+/// azimuths.
+TEST_F(RayKernelsTest, AimedRaysStayInTheirWindows) {
+  const std::vector<DirectionWindow> windows = windowsOfRoof();
+  RayOrigins aimed = roof_;
+  const double share = aimed.aim(windows);
+  EXPECT_NEAR(share, 0.3 * 2.5 / std::numbers::pi, 1e-6);
+  Rays rays(aimed.parts());
+  rayKernels().aim(aimed, kRays, rays.arrays());
+  for (std::size_t k = 0; k < kRays; ++k) {
+    const std::uint32_t of = aimed.part(std::uint32_t(rays.part[k])).frame;
+    const RayFrame& before = roof_.frame(of);  // azimuths of windows are those of its axes
+    const Vec3 along = rays.along(k);
+    EXPECT_NEAR(glm::length(along), 1, 5e-7);
+    const double height = glm::dot(along, Vec3(before.z));
+    const double turn = std::remainder(
+        std::atan2(glm::dot(along, Vec3(before.y)), glm::dot(along, Vec3(before.x))) -
+            windows[of].centre,
+        2 * std::numbers::pi);
+    const double low = std::min(windows[of].low, 0.7);
+    EXPECT_NEAR(height * height, low + 0.3 * double(rays.points[2][k]), 1e-6);
+    // Next to the normal the azimuth is nothing that single precision knows.
+    EXPECT_NEAR(turn, 2.5 * (2 * double(rays.points[3][k]) - 1),
+                1e-6 / std::sqrt(std::max(1e-9, 1 - height * height)));
+  }
+}
 
 TEST_F(RayKernelsTest, CoherentAndIncoherentPacketsEndOnTheSameTriangles) {
   Rays rays(roof_.parts());
@@ -148,21 +185,26 @@ TEST_F(RayKernelsTest, EveryInstructionSetGivesTheSameBits) {
     std::array<std::vector<float>, 2> disc = {std::vector<float>(kRays), std::vector<float>(kRays)};
     Rays roof;
     Rays floor;
+    Rays aimed;
     std::vector<std::uint32_t> items = {};
     std::vector<float> places = {};
   };
   std::vector<std::uint32_t> first(kRays);
   std::mt19937 random(3);
   for (std::uint32_t& bits : first) bits = std::uint32_t(random());
+  RayOrigins aimed = roof_;
+  aimed.aim(windowsOfRoof());
   std::unique_ptr<Sample> scalar;
   std::vector<std::unique_ptr<Sample>> samples;
   forEveryTarget([&](const RayKernels& kernels) {
-    auto sample = std::make_unique<Sample>(Sample{.roof = Rays(roof_.parts()), .floor = Rays(1)});
+    auto sample = std::make_unique<Sample>(
+        Sample{.roof = Rays(roof_.parts()), .floor = Rays(1), .aimed = Rays(roof_.parts())});
     kernels.scramble(first.data(), kRays - 3, 0x12345u, 99, sample->scrambled.data());
     kernels.toDisc(sample->roof.points[2].data(), sample->roof.points[3].data(), kRays,
                    sample->disc[0].data(), sample->disc[1].data());
     kernels.aim(roof_, kRays, sample->roof.arrays());
     kernels.aim(floor_, kRays, sample->floor.arrays());
+    kernels.aim(aimed, kRays, sample->aimed.arrays());
     for (Rays* rays : {&sample->roof, &sample->floor}) {
       for (std::size_t k = 0; k < kRays; k += kRayLanes) {
         const int lanes = kRayLanes - int(k / kRayLanes % 3);
@@ -189,6 +231,7 @@ TEST_F(RayKernelsTest, EveryInstructionSetGivesTheSameBits) {
     EXPECT_EQ(sample->disc, scalar->disc);
     EXPECT_TRUE(sample->roof == scalar->roof);
     EXPECT_TRUE(sample->floor == scalar->floor);
+    EXPECT_TRUE(sample->aimed == scalar->aimed);
     EXPECT_EQ(sample->items, scalar->items);
     EXPECT_EQ(sample->places, scalar->places);
   }

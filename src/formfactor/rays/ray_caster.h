@@ -76,6 +76,7 @@ class RayCaster {
 
   /// A place of the mesh in the coordinates of rays.
   glm::vec3 place(const Vec3& at) const { return embree_.place(at * scene_.scale); }
+  const EmbreeScene& embree() const { return embree_; }
   RayOrigins origins(std::size_t unknown) const;
   /// K: the number of items that are fronts.
   std::size_t fronts() const {

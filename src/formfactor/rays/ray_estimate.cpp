@@ -65,7 +65,7 @@ void lookAt(const RayScene& scene, FirstLook& look, const Progress& progress) {
 void castMore(const RayScene& scene, SampledRow& sampled, const Progress& progress) {
   RayRow row;
   scene.cast(sampled.position, kFewRays, row, progress);
-  if (row.columns.empty() || progress.cancelled()) return;
+  if (progress.cancelled()) return;
   sampled.few_entries = double(row.columns.size());
   const BothWatches watches;
   scene.cast(sampled.position, kManyRays, row, progress);
@@ -87,8 +87,9 @@ void moderate(std::vector<Row>& rows) {
 /// What rows have in common that says how many rays each needs.
 struct Need {
   double sky_weight = 0;
-  double usual = 0;        ///< norm of a usual row
-  double usual_whole = 0;  ///< the same with black backs
+  double usual = 0;                    ///< norm of a usual row
+  double usual_whole = 0;              ///< the same with black backs
+  double most_of_unknown = kMostRays;  ///< rays of a row that has seen next to nothing
 
   double normOf(const RowAccuracy& accuracy, double sky) const {
     return std::hypot(accuracy.norm, sky_weight * sky);
@@ -98,14 +99,14 @@ struct Need {
   double rays(const RowAccuracy& accuracy, double sky, double rays, double tolerance) const {
     const double norm = normOf(accuracy, sky);
     const double whole = std::max(std::hypot(norm, accuracy.backs_norm), usual_whole);
-    if (!(whole > 0)) return 0;
-    const double of_fronts =
-        std::max(norm, usual) > 0 ? accuracy.error / std::max(norm, usual) : 0.0;
-    const double of_backs = accuracy.backs_error / whole;
+    const double fronts = std::max(norm, usual);
+    const double of_fronts = relativeTo(fronts > 0 ? fronts : whole, accuracy.expectedError());
+    const double of_backs = relativeTo(whole, accuracy.backs_error);
     const double square = std::max(kMerged * of_fronts * of_fronts, of_backs * of_backs);
     // Beyond kMostRays rows are given up and miss the tolerance: then this is too long.
+    const double wanted = rays * std::pow(square / (tolerance * tolerance), 1 / kUsualOrder);
     return std::max(double(kPilotRays),
-                    rays * std::pow(square / (tolerance * tolerance), 1 / kUsualOrder));
+                    accuracy.isUnknown() ? std::min(wanted, most_of_unknown) : wanted);
   }
 };
 
@@ -118,6 +119,9 @@ void setUsualNorms(const RayScene& scene, const std::vector<FirstLook>& looks, N
     usual.add(norm, area);
     whole.add(std::hypot(norm, look.accuracy.backs_norm), area);
   }
+  double unknown = 0;
+  for (const FirstLook& look : looks) unknown += look.accuracy.isUnknown() ? look.stands_for : 0;
+  need.most_of_unknown = mostOfUnknown(unknown);
   need.usual = usual.value();
   need.usual_whole = whole.value();
 }
@@ -255,7 +259,7 @@ void foreseeBytes(const RayScene& scene, double entries, const FormFactorOptions
       n * (sizeof(RayRow) + kHeaders) + mergingBytes(n, double(n) * entries);
   const std::size_t working = matrixWorkingMemory(n, allowedThreads());
   const std::size_t panels = panelsOf(estimate.matrix_bytes, options.storedPrecision());
-  const std::size_t always = options.memory_held + scene.caster().bytes() + n * kAccounts;
+  const std::size_t always = options.memory_held + scene.bytes() + n * kAccounts;
   const std::size_t whole = always + estimate.matrix_bytes +
                             std::max({merging + counts + errors, 2 * errors, working + panels});
   const std::size_t rows = estimate.matrix_bytes + std::max(counts + errors, 2 * errors);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/figure_text.h"
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/scratch_rows.h"
@@ -89,7 +90,7 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
       }
     }
     result.fronts[i] = fronts;
-    result.sky[i] = (double(row.sky[0]) + double(row.sky[1])) * each;
+    result.sky[i] = row.countedSky() * each;
     // A row that saw no sky may have missed it; most scenes have no backs to be missed.
     beside.sky_error[i] = shareError(result.sky[i], each);
     if (result.backs[i] > 0) beside.backs_error[i] = shareError(result.backs[i], each);
@@ -97,10 +98,32 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
   if (result.report.closed) beside.sky_error.assign(n, 0.0);  // there is none to be missed
 }
 
-/// Stores the matrix, its error figures and the error of each entry. `sky_weight`: see
-/// FormFactorOptions::skyWeight().
+/// Notes rows that have stayed unknown. `usual`: the norm of a usual row.
+void noteUnknown(const std::vector<RowAccuracy>& rows, double usual, double tolerance,
+                 FormFactorReport& report) {
+  // Rounds have judged rows by norms that have changed since, by some per cent.
+  constexpr double kSlack = 1.5;
+  std::size_t unknown = 0;
+  double most = 0;
+  for (const RowAccuracy& row : rows) {
+    if (!row.isUnknown()) continue;
+    const double error = row.expectedError();
+    if (error <= kSlack * tolerance * std::max(row.norm, usual)) continue;
+    ++unknown;
+    most = std::max(most, error);
+  }
+  if (unknown == 0) return;
+  report.notes.push_back(
+      {Severity::warning,
+       fmt::format(
+           "{} of {} rows have seen next to nothing when rays stopped at {:.2g} million: what they "
+           "see of others, up to {:.2g} of their view, is unknown; --method exact finds it",
+           countText(unknown), countText(rows.size()), 1e-6 * double(report.rays.rays), most)});
+}
+
+/// Stores the matrix, its error figures and the error of each entry.
 void store(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
-           double sky_weight, ScratchMemory* scratch, FormFactors& result,
+           const RayAim& aim, ScratchMemory* scratch, FormFactors& result,
            UncertainEntries& uncertain) {
   const std::size_t n = rows.size();
   std::vector<double> density(n);
@@ -144,21 +167,29 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
   });
   double squares = 0;
   double norms = 0;
+  UsualNorm usual;
   CommonError common;
   for (const RowAccuracy& row : accuracy) common.add(row);
   for (std::size_t k = 0; k < n; ++k) {
     const RowAccuracy row = common.moderated(accuracy[k]);
     const double figure = row.figure();
     result.error[scene.order()[k]] = figure;
-    squares += scene.area()[k] * (row.error * row.error + row.known_error * row.known_error);
-    const double norm = std::hypot(row.norm, sky_weight * result.sky[scene.order()[k]]);
+    const double error = row.expectedError();
+    squares += scene.area()[k] * (error * error + row.known_error * row.known_error);
+    const double norm = std::hypot(row.norm, aim.sky_weight * result.sky[scene.order()[k]]);
+    accuracy[k].norm = norm;
+    usual.add(norm, scene.area()[k]);
     norms += scene.area()[k] * norm * norm;
     if (norm > 0) {
       double& largest = result.report.rays.largest_row_figure;
       largest = std::max(largest, figure / norm);
     }
   }
-  result.report.error_figure = norms > 0 ? std::sqrt(squares / norms) : 0.0;
+  // What has not been seen, or next to nothing of it, is off by as much as all of it.
+  const double most = std::max(squares, norms);
+  result.report.error_figure = most > 0 ? std::sqrt(squares / most) : 0.0;
+  noteUnknown(accuracy, usual.value(),
+              result.report.rays.loosened_tolerance.value_or(aim.tolerance), result.report);
 }
 
 /// Adds to a row's backs their part of what all beside the matrix has `gained`, by the squares of
@@ -233,7 +264,7 @@ void share(Processes& processes, Progress& progress, ExchangeMatrix& matrix) {
 
 bool seesSky(const std::vector<RayRow>& rows) {
   return std::any_of(rows.begin(), rows.end(),
-                     [](const RayRow& row) { return row.sky[0] + row.sky[1] > 0; });
+                     [](const RayRow& row) { return row.countedSky() > 0; });
 }
 
 }  // namespace
@@ -272,7 +303,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
   setAccounts(scene, known, rows, scratch.get(), result, beside);
-  store(scene, known, rows, options.skyWeight(), scratch.get(), result, uncertain);
+  store(scene, known, rows, aim, scratch.get(), result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();

@@ -119,6 +119,38 @@ void toDisc(const float* x, const float* y, std::size_t count, float* u, float* 
   }
 }
 
+/// Directions in a window of a frame (DirectionWindow), in its axes.
+HWY_INLINE Place inWindow(const RayOrigins& from, Float low, Float across, Float x, Float y) {
+  const Floats d;
+  const Float higher = hn::Mul(set(from.range()), x);
+  const Float height = hn::Sqrt(hn::Add(low, higher));
+  const Float radius = hn::Sqrt(hn::Max(hn::Zero(d), hn::Sub(across, higher)));
+  // cos and sin of a quarter of the angle, doubled twice.
+  const Float turn = hn::Sub(hn::Mul(set(2.0F), y), set(1.0F));
+  const Float quarter = hn::Mul(set(0.25F * from.halfTurn()), turn);
+  const Float square = hn::Mul(quarter, quarter);
+  Float cosine = smallCos(square);
+  Float sine = smallSin(quarter, square);
+  for (int k = 0; k < 2; ++k) {
+    const Float twice = hn::Mul(set(2.0F), sine);
+    const Float next = hn::Sub(set(1.0F), hn::Mul(twice, sine));
+    sine = hn::Mul(twice, cosine);
+    cosine = next;
+  }
+  return {hn::Mul(radius, cosine), hn::Mul(radius, sine), height};
+}
+
+/// Directions of the hemisphere.
+HWY_INLINE Place overPlane(Float x, Float y) {
+  const Floats d;
+  Float u = hn::Zero(d);
+  Float v = hn::Zero(d);
+  toDiscLanes(x, y, u, v);
+  const Float w =
+      hn::Sqrt(hn::Max(hn::Zero(d), hn::Sub(hn::Sub(set(1.0F), hn::Mul(u, u)), hn::Mul(v, v))));
+  return {u, v, w};
+}
+
 /// Component by component of a table's entries; one for all lanes, or each lane's own.
 class Entries {
  public:
@@ -231,14 +263,13 @@ void aim(const RayOrigins& from, std::size_t count, const RayArrays& rays) {
     store(add(point, times(set(kRayLift), z)), rays.origin, k);
     const Float x = hn::LoadU(d, rays.points[2] + k);
     const Float y = hn::LoadU(d, rays.points[3] + k);
-    Float u = hn::Zero(d);
-    Float v = hn::Zero(d);
-    toDiscLanes(x, y, u, v);
-    const Float w =
-        hn::Sqrt(hn::Max(hn::Zero(d), hn::Sub(hn::Sub(set(1.0F), hn::Mul(u, u)), hn::Mul(v, v))));
-    const Place along = add(add(times(u, frame.place(offsetof(RayFrame, x) / sizeof(float))),
-                                times(v, frame.place(offsetof(RayFrame, y) / sizeof(float)))),
-                            times(w, z));
+    const Place over = from.isAimed()
+                           ? inWindow(from, frame.real(offsetof(RayFrame, low) / sizeof(float)),
+                                      frame.real(offsetof(RayFrame, across) / sizeof(float)), x, y)
+                           : overPlane(x, y);
+    const Place along = add(add(times(over.x, frame.place(offsetof(RayFrame, x) / sizeof(float))),
+                                times(over.y, frame.place(offsetof(RayFrame, y) / sizeof(float)))),
+                            times(over.z, z));
     store(along, rays.direction, k);
     const Int cell = planar ? zCurve(x, y) : octahedralCells(along);
     hn::StoreU(hn::DemoteTo(Shorts(), cell), Shorts(), rays.cell + k);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "base/geometry/plane_frame.h"
 
@@ -18,7 +19,7 @@ RayFrame frameAround(const Vec3& normal, Vec3 across) {
   constexpr double kParallel = 0.1;
   if (glm::length(glm::cross(across, normal)) < kParallel) across = axisAcross(normal);
   const Vec3 x = glm::normalize(glm::cross(across, normal));
-  return {glm::vec3(x), glm::vec3(glm::cross(normal, x)), glm::vec3(normal)};
+  return {glm::vec3(x), glm::vec3(glm::cross(normal, x)), glm::vec3(normal), 0.0F, 1.0F};
 }
 
 }  // namespace
@@ -85,6 +86,40 @@ std::uint32_t RayOrigins::partAt(float x, float& within) const {
   while (k + 1 < parts_.size() && end_[k] <= double(x)) ++k;
   within = std::clamp((x - first_[k]) * stretch_[k], 0.0F, kBelowOne);
   return k;
+}
+
+void RayOrigins::addCorners(std::uint32_t k, std::vector<Vec3>& corners) const {
+  const Part& part = parts_[k];
+  const Vec3 corner(part.corner);
+  const Vec3 ab(part.ab);
+  const Vec3 ac(part.ac);
+  corners.insert(corners.end(), {corner, corner + ab, corner + ac});
+  if (part.parallelogram != 0) corners.push_back(corner + ab + ac);
+}
+
+double RayOrigins::aim(std::span<const DirectionWindow> windows) {
+  double range = 0;
+  double half_turn = 0;
+  for (const DirectionWindow& window : windows) {
+    range = std::max(range, window.high - window.low);
+    half_turn = std::max(half_turn, window.half);
+  }
+  is_aimed_ = true;
+  range_ = float(range);
+  half_turn_ = float(half_turn);
+  for (std::size_t k = 0; k < frames_.size(); ++k) {
+    const double low = std::clamp(windows[k].low, 0.0, 1.0 - double(range_));
+    RayFrame& frame = frames_[k];
+    frame.low = float(low);
+    frame.across = float(1 - low);
+    const Vec3 x(frame.x);
+    const Vec3 y(frame.y);
+    const double cosine = std::cos(windows[k].centre);
+    const double sine = std::sin(windows[k].centre);
+    frame.x = glm::vec3(cosine * x + sine * y);
+    frame.y = glm::vec3(cosine * y - sine * x);
+  }
+  return double(range_) * double(half_turn_) / std::numbers::pi;
 }
 
 }  // namespace radiosity

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "formfactor/rays/direction_window.h"
 #include "radiosity/patch_mesh.h"
 
 namespace radiosity {
@@ -16,6 +17,9 @@ struct RayFrame {
   glm::vec3 x;
   glm::vec3 y;
   glm::vec3 z;
+  // Of rays that go into a window, whose middle lies over x:
+  float low = 0;     ///< squared sine of the lowest elevation
+  float across = 1;  ///< the squared cosine of the same, which is exact where the sine is near 1
 };
 
 /// The patches of one unknown as triangles and parallelograms to choose from by area. Coordinates
@@ -40,6 +44,7 @@ class RayOrigins {
   double size() const { return size_; }
   /// True if all lies in one plane: all rays have frame(0) and leave from polygon(0).
   bool isPlanar() const { return frames_.size() == 1; }
+  std::size_t frames() const { return frames_.size(); }
   const RayFrame& frame(std::uint32_t k) const { return frames_[k]; }
   const Part& part(std::uint32_t k) const { return parts_[k]; }
   std::size_t parts() const { return parts_.size(); }
@@ -47,11 +52,24 @@ class RayOrigins {
   /// The part that x in [0, 1) falls on, and the place in its own range. Parts have shares of x by
   /// their area, so that points spread evenly over x spread evenly over all of it.
   std::uint32_t partAt(float x, float& within) const;
+  /// Adds the corners of a part.
+  void addCorners(std::uint32_t part, std::vector<Vec3>& corners) const;
+
+  /// Rays go into a window of each frame alone; all get the size of the largest. Some of them must
+  /// have a share above 0. Returns the share of the hemisphere that they take up.
+  double aim(std::span<const DirectionWindow> windows);
+  bool isAimed() const { return is_aimed_; }
+  /// Of the windows: the range of squared sines of elevations, and half that of azimuths.
+  float range() const { return range_; }
+  float halfTurn() const { return half_turn_; }
 
  private:
   void addPatch(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle);
 
   double size_ = 0;
+  bool is_aimed_ = false;
+  float range_ = 1;
+  float half_turn_ = 0;
   std::vector<Part> parts_;
   std::vector<RayFrame> frames_;
   std::vector<double> end_;     ///< of each part's share of x; while adding, areas summed up

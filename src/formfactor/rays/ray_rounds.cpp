@@ -185,10 +185,12 @@ class Rounds {
 
   /// The relative error that a row is to bring down: that of its fronts over their norm or, if
   /// larger, that of its backs over the norm of all it sees. Usual norms replace smaller ones.
+  /// While no row has seen a front, what they may see of fronts counts beside the backs.
   double relativeError(const RowState& row) const {
     const double norm = std::max(row.norm, usual_norm_);
     const double whole = std::max(row.whole_norm, usual_whole_norm_);
-    return std::max(norm > 0 ? row.error / norm : 0.0, whole > 0 ? row.backs_error / whole : 0.0);
+    return std::max(relativeTo(norm > 0 ? norm : whole, row.error),
+                    relativeTo(whole, row.backs_error));
   }
 
   /// Rays for a relative error of `aim`, from the errors with fewer rays.
@@ -201,7 +203,8 @@ class Rounds {
       order = std::clamp(order, kLeastOrder, kMostOrder);
     }
     const double growth = std::pow(error / aim, 2 / order);
-    return std::min(roundedRays(now.rays * std::min(growth, kMostGrowth)), kMostRays);
+    const std::uint32_t most = now.is_unknown != 0 ? most_of_unknown_ : kMostRays;
+    return std::min(roundedRays(now.rays * std::min(growth, kMostGrowth)), most);
   }
 
   /// The rays, in each replicate, that rows need for errors `loosened` times those aimed at.
@@ -295,8 +298,9 @@ class Rounds {
       const RowAccuracy accuracy = common_.moderated(measured[k]);
       before_[k] = now_[k];
       const double norm = std::hypot(accuracy.norm, aim_.sky_weight * rows_[k].skyShare());
-      now_[k] = {rows_[k].rays, accuracy.error, norm, accuracy.backs_error,
-                 std::hypot(norm, accuracy.backs_norm)};
+      now_[k] = {
+          rows_[k].rays, accuracy.isUnknown() ? 1u : 0u, accuracy.expectedError(),
+          norm,          accuracy.backs_error,           std::hypot(norm, accuracy.backs_norm)};
     }
     UsualNorm usual;
     UsualNorm whole;
@@ -306,8 +310,15 @@ class Rounds {
     }
     usual_norm_ = usual.value();
     usual_whole_norm_ = whole.value();
+    limitUnknown();
     progress_.check();
     report_.seconds_merge += clockSeconds() - start;
+  }
+
+  void limitUnknown() {
+    double unknown = 0;
+    for (const RowState& row : now_) unknown += row.is_unknown;
+    most_of_unknown_ = std::uint32_t(mostOfUnknown(unknown));
   }
 
   /// The aim of relative errors.
@@ -328,6 +339,7 @@ class Rounds {
   const KnownEntries& known_;
   RayAim aim_;
   double loosened_ = 1;
+  std::uint32_t most_of_unknown_ = kMostRays;
   RayReport& report_;
   Progress& progress_;
   RoundJournal journal_;
@@ -348,6 +360,13 @@ std::uint32_t roundedRays(double rays) {
   while (2 * power <= rays) power *= 2;
   constexpr double kStep = 0.25;
   return std::uint32_t(std::ceil(rays / (kStep * power)) * kStep * power);
+}
+
+double mostOfUnknown(double rows) {
+  constexpr double kShare = 0.5;
+  const double most =
+      kShare * FormFactorOptions::kMostRaysUnasked / (kReplicates * std::max(rows, 1.0));
+  return std::clamp(most, double(kPilotRays), double(kMostRays));
 }
 
 RayAim::RayAim(const FormFactorOptions& options)

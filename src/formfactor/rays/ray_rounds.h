@@ -22,6 +22,11 @@ inline constexpr std::uint32_t kMostRays = 1u << 24;
 /// which are 4 or more.
 std::uint32_t roundedRays(double rays);
 
+/// The most rays, a replicate, of each of so many rows that have seen next to nothing
+/// (RowAccuracy::isUnknown()). They may want any number of rays, so that all of them together get
+/// half as many as all rows get where no tolerance is asked for.
+double mostOfUnknown(double rows);
+
 /// The aim of casting rows.
 struct RayAim {
   double tolerance = 0;  ///< error over norm

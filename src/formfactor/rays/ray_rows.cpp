@@ -179,6 +179,7 @@ void RayRow::add(const RayRow& more) {
   }
   leaked += more.leaked;
   rays = more.rays;
+  window = more.window;
 }
 
 void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
@@ -206,6 +207,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       const std::span<const KnownEntries::Entry> entries = known.at(k);
       const bool all_known = known.rowAt(k) != nullptr;
       std::size_t next = 0;  // into entries
+      double all_hits = 0;
       const auto addKnownBefore = [&](std::size_t end) {
         for (; next < entries.size() && entries[next].position < end; ++next) {
           const double factor = entries[next].exchange / area[k];
@@ -228,6 +230,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
           hits_of[0] += double(own[r]);
           hits_of[1] += double(of_j[r]);
         }
+        all_hits += hits_of[0] + hits_of[1];
         const double mean = 0.5 * (factor[0] + factor[1]);
         // A row that sees little but j knows this well by its own rays; j's may be few.
         const double of_hits = pairHitsVariance(mean, hits_of, {area[k], area[j]});
@@ -236,7 +239,8 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       touchRows(scratch, rows[k].bytes());
       forBothEnds(rows[k], handed.columns(k), handed.hits(k), n, merge);
       addKnownBefore(n);
-      visit({k, n, merging.columns, merging.factors, merging.variances, entries, all_known});
+      visit({k, n, merging.columns, merging.factors, merging.variances, entries, all_hits,
+             all_known});
     });
     first = last;
   }
@@ -275,6 +279,7 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
   if (!merged.all_known) {
     addBacks(own, merged.unknowns, accuracy);
     accuracy.rays = own.counted();
+    accuracy.hits = merged.hits;
   }
   double squares = 0;
   double fourths = 0;
@@ -289,11 +294,15 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
 
 RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns) {
   ReplicateSums sums;
+  double hits = 0;
   for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < unknowns; ++e) {
     addAlone(row, e, sums);
+    hits += double(row.hits[e][0]) + double(row.hits[e][1]);
   }
   RowAccuracy accuracy = sums.accuracy();
   addBacks(row, unknowns, accuracy);
+  accuracy.rays = row.counted();
+  accuracy.hits = hits;
   return accuracy;
 }
 

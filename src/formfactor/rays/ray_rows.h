@@ -20,6 +20,9 @@ namespace radiosity {
 /// far off their mean is.
 inline constexpr int kReplicates = 2;
 
+/// RayRow::window of a row that is proved to see nothing: none of its rays needs to be traced.
+inline constexpr double kSeesNothing = 0x1p-100;
+
 /// Counts of where the rays of one unknown ended. Columns are positions in the order of the matrix,
 /// then K + s for the black back of surface s; strictly increasing.
 struct RayRow {
@@ -27,6 +30,9 @@ struct RayRow {
   std::array<std::uint32_t, kReplicates> sky{};
   std::array<std::uint32_t, kReplicates> lost{};  ///< no true hits: they do not count
   std::uint32_t leaked = 0;  ///< of these, those out of a closed scene; of both
+  /// The share of the hemisphere that rays go into; the rest is proved to be sky. Each ray stands
+  /// for 1 / window of those that would go everywhere.
+  double window = 1;
   std::pmr::vector<Index> columns;
   std::pmr::vector<std::array<std::uint32_t, kReplicates>> hits;
 
@@ -41,16 +47,16 @@ struct RayRow {
   std::size_t bytes() const {
     return columns.size() * sizeof(Index) + hits.size() * sizeof(hits[0]);
   }
-  /// Rays that count in one replicate.
+  /// Rays that count in one replicate, and those beside the window that they stand for.
   double counted(int replicate) const {
-    return double(rays) - double(lost[std::size_t(replicate)]);
+    return (double(rays) - double(lost[std::size_t(replicate)])) / window;
   }
-  /// Rays that count in both.
+  /// The same in both.
   double counted() const { return counted(0) + counted(1); }
+  /// Those of them that see the sky.
+  double countedSky() const { return counted() * (1 - window) + double(sky[0]) + double(sky[1]); }
   /// The share of them that the sky has.
-  double skyShare() const {
-    return counted() > 0 ? (double(sky[0]) + double(sky[1])) / counted() : 0.0;
-  }
+  double skyShare() const { return counted() > 0 ? countedSky() / counted() : 0.0; }
 };
 
 /// Both estimates of a row's pairs merged, for each replicate: G_ij = (c_ij + c_ji) / (n_i / A_i +
@@ -67,6 +73,7 @@ struct MergedRow {
   /// (foreseenVariance()); 0 for known ones.
   std::span<const double> variances;
   std::span<const KnownEntries::Entry> known;  ///< the known ones among the columns
+  double hits = 0;                             ///< of all columns, from both ends
   bool all_known = false;                      ///< the row rests on no rays
 };
 

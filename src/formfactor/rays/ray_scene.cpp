@@ -37,12 +37,29 @@ RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mes
   }
   std::optional<Enclosures> found;
   proved_closed_ = enclosuresOf(mesh, found).proved_closed;
+  if (!proved_closed_) windows_.emplace(caster_.embree());
+}
+
+/// Aims rays at what they can meet where that takes up little of the hemisphere. Returns the share
+/// of it that they then go into.
+double RayScene::aim(RayOrigins& origins) const {
+  if (!windows_) return 1;
+  const auto windows = windows_->of(origins);
+  if (!windows) return 1;
+  const bool is_alone = std::all_of(windows->begin(), windows->end(),
+                                    [](const DirectionWindow& window) { return window.empty(); });
+  return is_alone ? kSeesNothing : std::max(origins.aim(*windows), kSeesNothing);
 }
 
 void RayScene::cast(std::size_t position, std::uint32_t rays, RayRow& row,
                     const Progress& progress) const {
-  const RayOrigins origins = caster_.origins(order_[position]);
+  RayOrigins origins = caster_.origins(order_[position]);
   Replicates& counts = emptyCounts(caster_.items());
+  row.window = aim(origins);
+  if (row.window == kSeesNothing) {
+    for (RayCaster::Counts& of : counts) of.sky += rays - row.rays;
+    row.rays = rays;
+  }
   for (std::uint32_t first = row.rays; first < rays;) {
     if (progress.cancelled()) return;
     const std::uint32_t last = std::min(rays, (first / kSlice + 1) * kSlice);

@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "formfactor/rays/ray_caster.h"
 #include "formfactor/rays/ray_rows.h"
+#include "formfactor/rays/ray_windows.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -32,7 +34,11 @@ class RayScene {
   /// returns early with a useless row. Thread-safe for different rows.
   void cast(std::size_t position, std::uint32_t rays, RayRow& row, const Progress& progress) const;
 
+  /// Bytes held by this, about.
+  std::size_t bytes() const { return caster_.bytes() + (windows_ ? windows_->bytes() : 0); }
+
  private:
+  double aim(RayOrigins& origins) const;
   void addCounts(std::array<RayCaster::Counts, kReplicates>& counts, RayRow& row) const;
 
   RayCaster caster_;
@@ -41,6 +47,7 @@ class RayScene {
   std::vector<double> area_;
   std::vector<std::uint64_t> seed_;  ///< by position
   bool proved_closed_ = false;
+  std::optional<RayWindows> windows_;  ///< of an open scene
 };
 
 }  // namespace radiosity

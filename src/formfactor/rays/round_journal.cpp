@@ -45,6 +45,7 @@ void putRayRow(const RayRow& row, ByteWriter& bytes) {
   bytes.put(row.sky);
   bytes.put(row.lost);
   bytes.put(row.leaked);
+  bytes.put(row.window);
   bytes.putVarint(row.columns.size());
   Index before = 0;
   for (std::size_t e = 0; e < row.columns.size(); ++e) {
@@ -60,6 +61,7 @@ RayRow takeRayRow(ByteReader& bytes) {
   row.sky = bytes.get<std::array<std::uint32_t, kReplicates>>();
   row.lost = bytes.get<std::array<std::uint32_t, kReplicates>>();
   row.leaked = bytes.get<std::uint32_t>();
+  row.window = bytes.get<double>();
   // An entry takes a byte or more: there are no more entries than bytes left.
   const std::size_t entries = std::min<std::size_t>(bytes.getVarint(), bytes.left());
   row.columns.reserve(entries);

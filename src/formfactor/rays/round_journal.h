@@ -16,7 +16,8 @@ namespace radiosity {
 /// A row's rays, norms and errors.
 struct RowState {
   std::uint32_t rays = 0;
-  double error = 0;
+  std::uint32_t is_unknown = 0;  ///< 1 for RowAccuracy::isUnknown(), else 0
+  double error = 0;              ///< RowAccuracy::expectedError()
   double norm = 0;
   double backs_error = 0;
   double whole_norm = 0;  ///< of fronts and backs

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 
 #include "formfactor/rays/ray_model.h"
@@ -10,6 +11,15 @@ namespace radiosity {
 namespace {
 
 constexpr double kStated = 0.99;
+constexpr double kExpected = 0.95;
+/// Rows that are proved to see nothing have bounds below this (kSeesNothing).
+constexpr double kNothing = 1e-20;
+
+/// In a share `stated` of cases, no more hits than this were to be expected beyond the `hits` that
+/// there are (the exact bound of Poisson's distribution: F. Garwood, Biometrika 28, 1936).
+double missedHits(double hits, double stated) {
+  return boost::math::gamma_q_inv(hits + 1, 1 - stated) - hits;
+}
 
 }  // namespace
 
@@ -22,8 +32,17 @@ double RowAccuracy::figure() const {
                       known_error);
   }
   // In 99% of rows, one of the rays hits any part that takes more than this share of the row.
-  const double unseen = rays > 0 ? -std::log(1 - kStated) / rays : 0.0;
-  return std::max(seen, unseen);
+  const double unseen = missedHits(isUnknown() ? hits : 0, kStated);
+  return std::max(seen, rays > 0 ? std::min(1.0, unseen / rays) : 0.0);
+}
+
+bool RowAccuracy::isUnknown() const {
+  return rays > 0 && hits < kFewHits && missedHits(hits, kExpected) / rays > kNothing;
+}
+
+double RowAccuracy::expectedError() const {
+  if (!isUnknown()) return error;
+  return std::max(error, std::min(1.0, missedHits(hits, kExpected) / rays));
 }
 
 RowAccuracy ReplicateSums::accuracy() const {
@@ -63,7 +82,7 @@ void CommonError::add(const RowAccuracy& row) {
 
 RowAccuracy CommonError::moderated(const RowAccuracy& row) const {
   RowAccuracy result = row;
-  if (!(row.foreseen > 0) || !(ratios_ > 0)) return result;
+  if (!(row.foreseen > 0)) return result;
   const double mean = ratios_ / rows_;
   // The scatter of rows' own ratios: their variance over their mean squared.
   const double spread = std::max(0.0, squares_ / rows_ / (mean * mean) - 1);

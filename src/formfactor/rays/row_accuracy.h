@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
+
+#include "formfactor/rays/ray_model.h"
 
 namespace radiosity {
 
@@ -19,12 +22,26 @@ struct RowAccuracy {
   double backs_norm = 0;   ///< as `norm`, of the black backs that it sees, ...
   double backs_error = 0;  ///< ... and as `error`
   double rays = 0;         ///< its own that count, of both replicates
+  double hits = 0;         ///< on fronts, from both ends
 
   /// A bound that holds in 99% of rows on sqrt(sum_j (F_ij - true F_ij)^2), backs among the j:
   /// error squared over its estimate is distributed like F with `terms` degrees of freedom above
   /// and `degrees` below. It is at least the share that all rays may have missed.
   double figure() const;
+
+  /// True if it has seen next to nothing: neither the difference of its replicates nor what is
+  /// foreseen from so few hits says how far it is off.
+  bool isUnknown() const;
+  /// `error`, or if it is unknown at least the share of its view that 95% of such rows may have
+  /// more than was seen: 3 / rays without a hit.
+  double expectedError() const;
 };
+
+/// The error over the norm; infinite if there is an error of nothing.
+inline double relativeTo(double norm, double error) {
+  if (norm > 0) return error / norm;
+  return error > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+}
 
 /// Sums over the entries of a row; each replicate has an estimate of each entry.
 class ReplicateSums {
@@ -63,7 +80,8 @@ double foreseenVariance(double factor, double hits, double of_hits);
 /// The error that rows have in common. A row's own two replicates say little of its error if few
 /// entries make it: they may agree by chance. So the error is a mean of the row's own estimate and
 /// that of all rows, weighted by how well each is known: the credibility of Buehlmann, "Experience
-/// rating and credibility", ASTIN Bulletin 4 (1967).
+/// rating and credibility", ASTIN Bulletin 4 (1967). It begins with kUsualRows rows that are as far
+/// off as foreseen: two plates are two rows, whose replicates may agree in the only pair there is.
 class CommonError {
  public:
   /// Adds a row with the error that its replicates show.
@@ -72,10 +90,11 @@ class CommonError {
   RowAccuracy moderated(const RowAccuracy& row) const;
 
  private:
-  double rows_ = 0;
-  double degrees_ = 0;
-  double ratios_ = 0;   ///< sum of squared error over foreseen
-  double squares_ = 0;  ///< sum of their squares, each over 1 + 2 / degrees, its mean by chance
+  double rows_ = kUsualRows;
+  double degrees_ = kUsualRows;
+  double ratios_ = kUsualRows;  ///< sum of squared error over foreseen
+  /// Sum of their squares, each over 1 + 2 / degrees, its mean by chance.
+  double squares_ = kUsualRows;
 };
 
 }  // namespace radiosity
