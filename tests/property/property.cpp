@@ -1,6 +1,7 @@
-// property [--minutes N | --scenes N] [--seed S] [--kind K] [--folder DIR] [--held FILE]: random
-// scenes by all methods, and what must hold of each; see README.md. Exit code 1 if something does
-// not hold: the scene is then in the folder, with the command that shows it.
+// property [--minutes N | --scenes N] [--seed S] [--kind K] [--folder DIR] [--shrink SECONDS]
+// [--limit SECONDS]: random scenes by all methods, and what must hold of each; see ../README.md.
+// Exit code 1 if something does not hold: the scene is then in the folder, with the command that
+// shows it.
 #include <fmt/format.h>
 #include <sys/time.h>
 #include <unistd.h>
