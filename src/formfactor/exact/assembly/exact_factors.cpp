@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/processor_clock.h"
+#include "base/thread_order.h"
 #include "formfactor/closed_scene.h"
 #include "formfactor/exact/assembly/shared_tasks.h"
 #include "formfactor/exact/assembly/task_journal.h"
@@ -94,17 +95,19 @@ RowSums fillRows(const RowContext& context, const RowTasks& tasks, RowJournal* j
   tbb::enumerable_thread_specific<RowAssembly> workers([&] { return RowAssembly(context); });
   using Range = tbb::blocked_range<std::size_t>;
   const auto sumTasks = [&](std::size_t begin, std::size_t end) {
+    const ThreadOrder order;
     return tbb::parallel_deterministic_reduce(
         Range(begin, end, 1), RowSums(context.order.ranked),
         [&](const Range& range, RowSums part) {
+          const ThreadOrder::Body ordered(order);
           for (std::size_t t = range.begin(); t != range.end(); ++t) {
             // A leaf of the tree is one task: `part` holds the sums of no other.
             if (kept.take(t, part)) continue;
             const auto rows = tasks[t];
             workers.local().run(rows, part);
             kept.keep(t, part);
-            const PatchOrder& order = context.order;
-            progress.advance(order.rank[rows.back().end - 1] + 1 - order.rank[rows.front().first]);
+            const std::vector<Index>& rank = context.order.rank;
+            progress.advance(rank[rows.back().end - 1] + 1 - rank[rows.front().first]);
           }
           return part;
         },
