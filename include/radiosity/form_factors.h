@@ -176,7 +176,7 @@ struct RayReport {
   std::size_t triangles = 0;
   std::size_t rays = 0;    ///< cast in total
   std::size_t lost = 0;    ///< of these, not counted: they hit the polygon they left
-  std::size_t leaked = 0;  ///< also not counted: they left a scene that is proved closed
+  std::size_t leaked = 0;  ///< also not counted: they left patches that are enclosed
   int rounds = 0;
   std::size_t short_rows = 0;  ///< given up before they met the tolerance
   /// The tolerance that rows were cast to, if none was asked for and kMostRaysUnasked did not
@@ -215,13 +215,13 @@ struct FormFactorReport {
   std::size_t matrix_bytes = 0;
   std::size_t estimated_bytes = 0;  ///< as estimated before the run
   double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method
-  /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw in a closed scene; else the
-  /// amount by which fronts + backs exceed 1.
+  /// max |fronts + backs + sky - 1| over non-empty rows. Exact: raw, where rows are closed; else
+  /// the amount by which fronts + backs exceed 1.
   double largest_row_error = 0;
   /// Exact and rays: area-weighted relL2 of the error of F; see FormFactors. Rays that give
   /// sources: relative to norms in which the sky counts, FormFactorOptions::skyWeight().
   double error_figure = 0;
-  bool closed = false;  ///< no patch sees the sky
+  bool closed = false;  ///< no patch sees the sky: all are enclosed (Enclosures)
   bool symmetrized = false;
   ClosureReport closure;          ///< if symmetrized, or exact and closed
   bool closure_enforced = false;  ///< exact: rows were closed, not only measured
@@ -233,9 +233,9 @@ struct FormFactorReport {
 /// The matrix and the three accounts of each row, which sum to 1: seen fronts (the row sum), seen
 /// backs and sky. N values each, 0 in the row of a degenerate patch. If patches share unknowns
 /// (PatchMesh::clusters), rows are those of clusters, PatchMesh::unknowns() of them. Exact: fronts
-/// and backs are as computed. In a closed scene sky is 0, and 1 - fronts - backs is the raw error
-/// of closure. In an open one sky is 1 - fronts - backs, which rounding and the tolerance may leave
-/// a little below 0.
+/// and backs are as computed. The sky of an enclosed patch (Enclosures) is 0, and 1 - fronts -
+/// backs is the raw error of closure. That of others is 1 - fronts - backs, but never below 0:
+/// where rounding and the tolerance have more than 1, that is the row's error.
 struct FormFactors {
   ExchangeMatrix matrix;
   std::vector<double> fronts;

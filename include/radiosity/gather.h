@@ -56,19 +56,26 @@ struct GatherPass {
 enum class GatherStatus {
   converged,   ///< the bound of |B* - B| is within the tolerance; usable
   pass_limit,  ///< `passes` came first; B has that many bounces
-  no_light     ///< E = 0 and the sky is dark: B = 0
+  no_light,    ///< E = 0 and the sky is dark: B = 0
+  /// More than kMostImbalance of the light is lost between the eyes, or received in excess: patches
+  /// are too large for points to stand for them; not usable.
+  unbalanced
 };
+
+/// Of the power that comes in, in a band.
+inline constexpr double kMostImbalance = 0.05;
 
 struct GatherSummary {
   GatherStatus status = GatherStatus::pass_limit;
   std::vector<GatherPass> passes;
   std::size_t hemicubes = 0;  ///< of one pass: L less the eyes without area
   std::size_t pixels = 0;     ///< of one pass
-  bool closed = false;        ///< no eye sees the sky
+  bool closed = false;        ///< no patch sees the sky: all are enclosed (Enclosures)
   std::size_t bytes = 0;      ///< held at once
   std::string simd_target;
   double seconds = 0;
-  std::string message;      ///< plain words, with numbers
+  std::string message;  ///< plain words, with numbers; says if B is not usable
+  bool usable() const { return status != GatherStatus::unbalanced; }
   std::vector<Note> notes;  ///< on the device that drew the hemicubes, and others
 };
 

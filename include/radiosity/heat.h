@@ -67,8 +67,11 @@ struct HeatOptions {
 };
 
 enum class HeatStatus {
-  converged,      ///< both residuals are within the tolerance; usable
-  no_convergence  ///< the iteration limit came first; not usable as it is
+  converged,       ///< both residuals are within the tolerance; usable
+  no_convergence,  ///< the iteration limit came first; not usable as it is
+  /// Converged, but more heat is missing, or there is more, than the errors of the form factors
+  /// explain (mostImbalance()); not usable.
+  unbalanced
 };
 
 /// The account of the heat, W. radiated = to_sky + on_backs + imbalance.

@@ -56,13 +56,16 @@ inline constexpr NameTable<Solver, 7> kSolverNames{{{Solver::automatic, "auto"},
                                                     {Solver::gmres, "gmres"},
                                                     {Solver::direct, "direct"},
                                                     {Solver::petsc, "petsc"}}};
-inline constexpr NameTable<SolveStatus, 4> kSolveStatusNames{
+inline constexpr NameTable<SolveStatus, 5> kSolveStatusNames{
     {{SolveStatus::converged, "converged"},
      {SolveStatus::no_convergence, "no_convergence"},
      {SolveStatus::no_light, "no_light"},
-     {SolveStatus::singular, "singular"}}};
-inline constexpr NameTable<HeatStatus, 2> kHeatStatusNames{
-    {{HeatStatus::converged, "converged"}, {HeatStatus::no_convergence, "no_convergence"}}};
+     {SolveStatus::singular, "singular"},
+     {SolveStatus::unbalanced, "unbalanced"}}};
+inline constexpr NameTable<HeatStatus, 3> kHeatStatusNames{
+    {{HeatStatus::converged, "converged"},
+     {HeatStatus::no_convergence, "no_convergence"},
+     {HeatStatus::unbalanced, "unbalanced"}}};
 inline constexpr NameTable<DirectLight, 5> kDirectLightNames{
     {{DirectLight::none, "none"},
      {DirectLight::exact, "exact"},
@@ -74,10 +77,11 @@ inline constexpr NameTable<GatherAt, 2> kGatherAtNames{
 
 inline constexpr NameTable<LightmapShows, 2> kLightmapShowsNames{
     {{LightmapShows::irradiance, "irradiance"}, {LightmapShows::radiosity, "radiosity"}}};
-inline constexpr NameTable<GatherStatus, 3> kGatherStatusNames{
+inline constexpr NameTable<GatherStatus, 4> kGatherStatusNames{
     {{GatherStatus::converged, "converged"},
      {GatherStatus::pass_limit, "pass_limit"},
-     {GatherStatus::no_light, "no_light"}}};
+     {GatherStatus::no_light, "no_light"},
+     {GatherStatus::unbalanced, "unbalanced"}}};
 
 /// The word for a value. Throws logic_error if the table lacks it.
 template <class Enum, std::size_t N>

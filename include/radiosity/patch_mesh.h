@@ -51,7 +51,10 @@ struct Enclosures {
   /// P, 1: a polygon on the same corners faces the other way, so that its front hides this one's
   /// back.
   std::vector<std::uint8_t> covered;
-  bool proved_closed = false;  ///< every patch is on or in a room: none sees the sky
+  /// N, 1: the patch is proved to see no sky, since it looks into a bounded space; also for a patch
+  /// without an area.
+  std::vector<std::uint8_t> enclosed;
+  bool closed = false;  ///< all patches are enclosed, and there are some
 };
 
 /// Clusters of patches that share one unknown, in a scene with more patches than were asked for:

@@ -183,7 +183,7 @@ struct SceneInfo {
   Vec3 emitted_power{0};      ///< W per band
   /// Every edge is shared by two faces, oppositely (after weld), or one closed part that faces
   /// inwards encloses all the rest.
-  bool closed = false;
+  bool watertight = false;
   std::size_t open_edges = 0;  ///< used by one face alone
   std::vector<Note> problems;  ///< flipped normals, duplicates, degenerates, overlaps, no emitter
 };

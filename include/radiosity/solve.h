@@ -48,6 +48,9 @@ enum class SolveStatus {
   no_convergence,  ///< the iteration limit came first; B is the last iterate, not usable as it is
   no_light,        ///< nothing emits, no sky shines in: B = 0; usable, but dark
   singular,        ///< rho = 1 everywhere in a closed, lit room: no solution; B is empty
+  /// The system is solved, but more energy is missing, or there is more, than the errors of the
+  /// form factors explain (mostImbalance()): rows are wrong; not usable.
+  unbalanced,
 };
 
 /// The account of the light, W, one value a band.
@@ -100,6 +103,13 @@ struct Solution {
   std::vector<double> irradiance;  ///< N * bands: H = F B + the light of the sky
   SolveSummary summary;
 };
+
+/// The largest share of the power coming in by which an account may be off that is made with these
+/// form factors: what they state as their error, and 1% at least; 5% for hemicubes, which state
+/// none. No limit for matrices from elsewhere: areas may be missing, and notes say what is odd.
+double mostImbalance(const FormFactors& factors);
+/// What a user can do about more than that, by the options of the program.
+std::string imbalanceCure(FactorsFrom method);
 
 /// `reflectance`, `emission`: N * bands, row-major; 0 <= rho <= 1, E >= 0, finite, else InputError
 /// naming the patch. Needs a matrix of N rows and accounts of N values. Work that the scene does

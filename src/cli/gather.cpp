@@ -6,8 +6,10 @@ namespace radiosity::cli {
 
 namespace {
 
-/// The exit code: 1 if the default limit of passes came first; 0 otherwise.
+/// The exit code: 1 if energy does not balance or the default limit of passes came first; 0
+/// otherwise.
 int judgeGathered(Session& session, const Pipeline& pipeline, const GatherSummary& summary) {
+  if (!summary.usable()) return exitCode(session, false, summary.message);
   if (summary.status == GatherStatus::converged) return 0;
   const bool asked = summary.passes.size() != std::size_t(GatherOptions().passes);
   if (summary.status == GatherStatus::pass_limit && (asked || session.request.passes)) return 0;

@@ -93,15 +93,11 @@ void warnOfLosses(const HeatBalance& b, FactorsFrom method, double given_off,
                      numberText(b.on_backs, 3), share(b.on_backs))});
   }
   if (worthIt(b.imbalance)) {
-    const bool from_elsewhere = method == FactorsFrom::file || method == FactorsFrom::matrix;
-    const char* const cure = from_elsewhere ? "correct the matrix, or its areas (--areas)"
-                             : method == FactorsFrom::hemicube
-                                 ? "give --symmetrize, or a higher --resolution"
-                                 : "give --closure enforce, or a smaller --tolerance";
-    notes.push_back({Severity::warning,
-                     fmt::format("{} W are not accounted for, {}: rows of form factors do not sum "
-                                 "to 1 or lack reciprocity; {}",
-                                 numberText(b.imbalance, 3), share(b.imbalance), cure)});
+    notes.push_back(
+        {Severity::warning,
+         fmt::format("{} W are not accounted for, {}: rows of form factors do not sum "
+                     "to 1 or lack reciprocity; {}",
+                     numberText(b.imbalance, 3), share(b.imbalance), imbalanceCure(method))});
   }
 }
 

@@ -17,8 +17,6 @@ namespace {
 
 // The program warns of light lost on backs above this share of the emitted light.
 constexpr double kBacksWorthWarning = 1e-3;
-/// The program warns of an imbalance of gathered light above this share of the incoming power.
-constexpr double kImbalanceWorthWarning = 0.05;
 
 std::string triple(const Vec3& v) {
   return fmt::format("{}, {}, {}", numberText(v.x), numberText(v.y), numberText(v.z));
@@ -96,7 +94,7 @@ void describeScene(Report& report, const Scene& scene) {
   bands(report, "upper_m", "upper corner", info.upper, "m");
   bands(report, "extent_m", "extent", info.upper - info.lower, "m");
   report.text("up", "up", nameOf(kUpNames, scene.up));
-  report.yesNo("closed", "closed", info.closed);
+  report.yesNo("watertight", "watertight", info.watertight);
   report.count("open_edges", "open edges", info.open_edges);
   bands(report, "emitted_power_W", "emitted power (R G B)", info.emitted_power, "W");
   std::vector<std::vector<std::string>> rows;
@@ -336,21 +334,7 @@ void gatherFigures(Report& report, const Gathered& gathered, const GatherOptions
   if (!s.passes.empty()) energyFigures(report, s.passes.back().energy);
   passTable(report, s.passes);
   report.text("message", "in words", oneLine(s.message));
-}
-
-/// Warns of an imbalance. The view from a point represents an area, so large patches lose or gain
-/// light.
-void warnOfImbalance(Report& report, const EnergyAccount& e) {
-  const double imbalance = sum(e.imbalance);
-  if (!(std::abs(imbalance) > kImbalanceWorthWarning * incoming(e))) return;
-  const std::string what = imbalance > 0 ? "of the light falls between the eyes and is lost"
-                                         : "more light is received than leaves";
-  const Note note{
-      Severity::warning,
-      fmt::format("{:.2g}% {}: the patches are too large for single points to stand for "
-                  "them; give more --patches, or solve by the matrix (radiosity solve)",
-                  100 * std::abs(imbalance) / incoming(e), what)};
-  report.notes({&note, 1});
+  report.yesNo("usable", "usable", s.usable());
 }
 
 }  // namespace
@@ -364,7 +348,6 @@ void summarizeGathered(Report& report, const Gathered& gathered, const PatchMesh
   if (s.passes.empty()) return;
   const EnergyAccount& energy = s.passes.back().energy;
   warnOfBacks(report, energy, gathered.backs_by_surface, mesh);
-  warnOfImbalance(report, energy);
 }
 
 }  // namespace radiosity::cli

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "base/made.h"
 #include "base/parallel.h"
@@ -14,6 +15,7 @@
 #include "formfactor/row_accounts.h"
 #include "gather/gpu_gatherer.h"
 #include "gather/passes.h"
+#include "mesh/patches/enclosures.h"
 
 namespace radiosity {
 namespace {
@@ -246,6 +248,18 @@ class Passes {
   tbb::enumerable_thread_specific<Gatherer> workers_;
 };
 
+/// The imbalance of the band where it is largest, as a share of the power that comes in.
+double worstImbalance(const GatherPass& pass) {
+  const EnergyAccount& energy = pass.energy;
+  double worst = 0;
+  for (std::size_t b = 0; b < energy.imbalance.size(); ++b) {
+    const double whole = energy.emitted[b] + energy.from_sky[b];
+    const double share = whole > 0 ? energy.imbalance[b] / whole : 0.0;
+    if (std::abs(share) > std::abs(worst)) worst = share;
+  }
+  return worst;
+}
+
 std::string messageOf(const GatherSummary& summary, const GatherOptions& options) {
   if (summary.status == GatherStatus::no_light) {
     return "no light: nothing emits, so everything is dark; usable, but black";
@@ -257,6 +271,14 @@ std::string messageOf(const GatherSummary& summary, const GatherOptions& options
       last.bound ? fmt::format("what further passes would add is below {:.2e} W/m^2", *last.bound)
                  : "what further passes would add is not bounded: reflectance times what is seen "
                    "reaches 1";
+  if (summary.status == GatherStatus::unbalanced) {
+    return fmt::format(
+        "energy does not balance: after {}, {:.3g}% of the light {}; not usable; patches are too "
+        "large for points to stand for them: give more --patches, or solve by the matrix "
+        "(radiosity solve)",
+        passes, 100 * std::abs(worstImbalance(last)),
+        worstImbalance(last) > 0 ? "is missing" : "is too much");
+  }
   if (summary.status == GatherStatus::converged) {
     return fmt::format("converged: {}, last change {:.2e} of the largest emission; {}", passes,
                        last.change, bound);
@@ -279,10 +301,14 @@ void runPasses(const GatherScene& scene, std::unique_ptr<GpuEye> eye, const Gath
       break;
     }
   }
+  if (std::abs(worstImbalance(summary.passes.back())) > kMostImbalance) {
+    summary.status = GatherStatus::unbalanced;
+  }
   const HemicubeCounts counts = passes.counts();
   summary.hemicubes = counts.hemicubes / summary.passes.size();
   summary.pixels = counts.pixels / summary.passes.size();
-  summary.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
+  std::optional<Enclosures> found;
+  summary.closed = counts.hemicubes > 0 && enclosuresOf(scene.mesh, found).closed;
   summary.bytes = passes.bytes();
 }
 

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "heat/heat_solve.h"
+#include "radiosity/solve.h"
 
 namespace radiosity {
 
@@ -70,6 +72,28 @@ HeatBalance HeatSolve::balanceOf(const HeatSolution& solution) const {
   for (const double power : of_condition) balance.throughput += std::max(0.0, power);
   balance.imbalance = balance.radiated - balance.to_sky - balance.on_backs;
   return balance;
+}
+
+/// Net powers are the measure, unless all are small beside what surfaces give off: then they are
+/// differences of it, which rounding and the tolerance leave.
+void HeatSolve::judgeBalance(HeatSolution& solution) const {
+  constexpr double kSmall = 1e-4;
+  HeatSummary& summary = solution.summary;
+  const HeatBalance& balance = summary.balance;
+  double given_off = 0;
+  for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
+    given_off += area_[k / width_] * solution.radiosity[k];
+  }
+  const double explained =
+      std::max(mostImbalance(factors_) * balance.throughput, kSmall * given_off);
+  if (summary.status != HeatStatus::converged || !(std::abs(balance.imbalance) > explained)) return;
+  summary.status = HeatStatus::unbalanced;
+  summary.message = fmt::format(
+      "heat does not balance: {:.3g} W {}, where {:.3g} W are exchanged and the form factors' "
+      "errors "
+      "explain {:.2g} W; not usable; {}",
+      std::abs(balance.imbalance), balance.imbalance > 0 ? "are missing" : "are too much",
+      balance.throughput, explained, imbalanceCure(factors_.method));
 }
 
 }  // namespace radiosity

@@ -425,6 +425,7 @@ HeatSolution HeatSolve::run() {
                  "asked for {:.1e}; not usable; allow more iterations or a larger tolerance",
                  iterations, residuals.radiosity, residuals.balance, options_.tolerance);
   if (good && factors_.seeNothing()) summary.message += fmt::format("; {}", factors_.condition());
+  judgeBalance(solution);
   return solution;
 }
 

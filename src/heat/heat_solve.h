@@ -59,6 +59,9 @@ class HeatSolve {
   Residuals residuals(HeatFields& fields) const;
   HeatSolution solutionOf(HeatFields fields) const;
   HeatBalance balanceOf(const HeatSolution& solution) const;
+  /// Makes a converged solution `unbalanced`, with a message, if more heat is missing than the form
+  /// factors' errors explain.
+  void judgeBalance(HeatSolution& solution) const;
   bool isLinear() const;
   const HeatCondition& conditionOf(std::size_t row) const {
     return rows_.conditions[rows_.of_row[row]];

@@ -156,6 +156,7 @@ py::dict dictOf(const GatherSummary& summary) {
                       .dict();
   dict["message"] = printable(withKeywords(summary.message));
   dict["status"] = nameOf(kGatherStatusNames, summary.status);
+  dict["usable"] = summary.usable();
   dict["notes"] = listOf(summary.notes);
   py::list passes;
   for (const GatherPass& pass : summary.passes) passes.append(dictOf(pass));

@@ -3,6 +3,7 @@
 #include "formfactor/rays/patch_irradiance.h"
 #include "mesh/clusters/cluster_means.h"
 #include "solve/beyond_means.h"
+#include "solve/energy.h"
 #include "solve/solve_rows.h"
 
 namespace radiosity {
@@ -32,6 +33,7 @@ Solution ClusterSolve::run() const {
       balanced(factors_, within.beyondMeans(), means.irradiance, materials_.bands);
   Solution solution = between(more);
   accountFor(more, solution.summary.energy);
+  judgeBalance(factors_, emission_, solution.summary);
   solution.summary.seconds += means.summary.seconds;
   solution.irradiance = within.around(solution.irradiance);
   solution.radiosity = radiosityOf(solution.irradiance);

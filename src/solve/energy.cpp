@@ -1,6 +1,78 @@
 #include "solve/energy.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
 namespace radiosity {
+namespace {
+
+/// Rows are off 1 by rounding and tolerance, and bright rooms multiply that.
+constexpr double kLeastImbalance = 0.01;
+/// Of hemicubes, which represent a patch by a point.
+constexpr double kImbalanceOfHemicubes = 0.05;
+
+}  // namespace
+
+double mostImbalance(const FormFactors& factors) {
+  switch (factors.method) {
+    case FactorsFrom::exact:
+    case FactorsFrom::rays:
+      return std::max(kLeastImbalance, factors.report.error_figure);
+    case FactorsFrom::hemicube:
+      return kImbalanceOfHemicubes;
+    case FactorsFrom::matrix:
+    case FactorsFrom::file:
+      break;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+std::string imbalanceCure(FactorsFrom method) {
+  switch (method) {
+    case FactorsFrom::exact:
+      return "give --closure enforce, or a smaller --tolerance";
+    case FactorsFrom::rays:
+      return "give a smaller --tolerance, or --method exact";
+    case FactorsFrom::hemicube:
+      return "give --symmetrize, a higher --resolution, or --method exact";
+    case FactorsFrom::matrix:
+    case FactorsFrom::file:
+      break;
+  }
+  return "correct the matrix, or its areas (--areas)";
+}
+
+void judgeBalance(const FormFactors& factors, std::span<const double> emission,
+                  SolveSummary& summary) {
+  if (summary.status != SolveStatus::converged) return;
+  const double most = mostImbalance(factors);
+  const EnergyAccount& energy = summary.energy;
+  const std::span<const double> area = factors.matrix.area();
+  const double all_area = std::accumulate(area.begin(), area.end(), 0.0);
+  const std::size_t bands = energy.emitted.size();
+  for (std::size_t b = 0; b < bands; ++b) {
+    double brightest = 0;
+    for (std::size_t k = b; k < emission.size(); k += bands) {
+      brightest = std::max(brightest, emission[k]);
+    }
+    const double whole = energy.emitted[b] + energy.from_sky[b];
+    const double missing = energy.imbalance[b];
+    const double explained = most * whole + summary.residual * all_area * brightest;
+    if (!(std::abs(missing) > explained)) continue;
+    summary.status = SolveStatus::unbalanced;
+    summary.message = fmt::format(
+        "energy does not balance: in band {}, {:.3g} W of {:.3g} W ({:.3g}%) {}, where the form "
+        "factors' errors explain {:.2g}%; not usable; {}",
+        b, std::abs(missing), whole, 100 * std::abs(missing) / whole,
+        missing > 0 ? "are missing" : "are too much", 100 * explained / whole,
+        imbalanceCure(factors.method));
+    return;
+  }
+}
 
 // By reciprocity the light that goes to fronts is the light that falls on them from fronts: sum_i
 // A_i fronts_i B_i = sum_j A_j (H_j - S_j); S is the irradiance from the sky. The accounts of a row

@@ -18,4 +18,9 @@ EnergyAccount energyAccount(const FormFactors& factors, std::span<const double> 
                             const Incoming& incoming, std::span<const double> radiosity,
                             std::span<const double> irradiance, int bands);
 
+/// Makes a converged solution `unbalanced`, with a message, if its account is off by more than
+/// mostImbalance() and what its residual explains. `emission`: as solved.
+void judgeBalance(const FormFactors& factors, std::span<const double> emission,
+                  SolveSummary& summary);
+
 }  // namespace radiosity

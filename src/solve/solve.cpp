@@ -167,8 +167,10 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group,
                std::span<const std::string> group_names, std::span<const double> sky) {
-  return solveRows(factors, reflectance, emission, bands, options, progress, {group, group_names},
-                   sky, {});
+  Solution solution = solveRows(factors, reflectance, emission, bands, options, progress,
+                                {group, group_names}, sky, {});
+  judgeBalance(factors, emission, solution.summary);
+  return solution;
 }
 
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,

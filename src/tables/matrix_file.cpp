@@ -93,7 +93,7 @@ void setDefaultAccounts(NamedFactors& factors) {
   factors.backs.assign(n, 0.0);
   factors.sky.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    factors.sky[i] = factors.matrix->area()[i] > 0 ? 1 - sums[i] : 0.0;
+    factors.sky[i] = factors.matrix->area()[i] > 0 ? std::max(0.0, 1 - sums[i]) : 0.0;
   }
 }
 

@@ -276,7 +276,7 @@ class LargeFiles(FileTest):
         text = "".join("".join(f"v {2 * (k % 150) + x} {2 * (k // 150) + y} {z}\n" for x, y, z in box)
                        + faces for k in range(22500))
         self.put("a.obj", text)
-        self.assertRegex(self.passes("info", "a.obj"), r"closed +yes")
+        self.assertRegex(self.passes("info", "a.obj"), r"watertight +yes")
 
     def test_many_faces_around_one_point_are_read(self):
         count = 30000

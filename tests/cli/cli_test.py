@@ -38,11 +38,11 @@ class Help(CliTest):
 class Subcommands(CliTest):
     def test_info_describes_the_scene(self):
         out = self.run_program("info", DATA / "cornell-box.obj").out
-        for word in ["emitted power", "closed", "upper corner", "open edges"]:
+        for word in ["emitted power", "watertight", "upper corner", "open edges"]:
             self.assertIn(word, out)
         report = self.report("info", "box.obj")["scene"]
         self.assertEqual(report["faces"], 6)
-        self.assertTrue(report["closed"])
+        self.assertTrue(report["watertight"])
         # The ceiling is 1 m^2 and radiates pi times its Ke. Ke is read as written: rounding only.
         np.testing.assert_allclose(report["emitted_power_W"], np.pi * np.array([5, 4, 3]),
                                    rtol=1e-12)

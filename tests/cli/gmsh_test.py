@@ -66,7 +66,7 @@ class Gmsh(CliTest):
         self.assertEqual(faces, 6)
         self.assertAlmostEqual(area, 2 + 2 ** .5, delta=1e-5)  # of digits in the report
         self.assertEqual(list(self.surfaces()), ["block"])
-        self.assertRegex(self.run_program("info", "a.msh").out, r"closed +yes")
+        self.assertRegex(self.run_program("info", "a.msh").out, r"watertight +yes")
 
     def test_a_face_in_several_groups_belongs_to_the_first(self):
         # Version 2.2 writes it once for each; 4.1 lists the groups of its entity.

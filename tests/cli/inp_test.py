@@ -73,7 +73,7 @@ class Inp(CliTest):
         run = self.run_program("info", "a.inp")
         self.assertIn("no faces, volume elements alone (12): the sides that no two of them share are the surfaces (32)",
                       run.err)
-        self.assertRegex(run.out, r"closed +yes")
+        self.assertRegex(run.out, r"watertight +yes")
         self.assertNotIn("flipped", run.err)
         # Sides named by *SURFACE are surfaces of that name.
         named = text + ("*SURFACE, NAME=hot, TYPE=ELEMENT\nupper, S2\n*SURFACE, NAME=other, TYPE=NODE\n1\n"

@@ -265,7 +265,7 @@ class OtherFormats(CliTest):
                 self.assertNotIn("turn their backs", run.err)
                 scene = self.report("info", "a.x3d")["scene"]
                 self.assertAlmostEqual(scene["surfaces"][0]["area_m2"], area, delta=1e-4)  # six figures
-                self.assertEqual(scene["closed"], "bottom" not in geometry)
+                self.assertEqual(scene["watertight"], "bottom" not in geometry)
         for ccw, front in [("true", 1), ("false", -1)]:
             self.put("a.x3d", X3D.replace("<IndexedFaceSet", f'<IndexedFaceSet ccw="{ccw}"'))
             self.run_program("mesh", "a.x3d", "--patches", "1", "-o", "m.obj")

@@ -38,7 +38,7 @@ class Stl(CliTest):
         self.put(tetrahedron([("floor slab", FACES[:1]), ("walls", FACES[1:])]))
         scene = self.scene()
         self.assertEqual([s["name"] for s in scene["surfaces"]], ["floor slab", "walls"])
-        self.assertEqual([scene["faces"], scene["vertices"], scene["closed"]], [4, 4, True])
+        self.assertEqual([scene["faces"], scene["vertices"], scene["watertight"]], [4, 4, True])
 
     def test_text_and_binary_are_the_same_scene(self):
         records = b"".join(struct.pack("<12fH", 0, 0, 0, *CORNERS[a], *CORNERS[b], *CORNERS[c], 0)

@@ -91,7 +91,7 @@ class ThreeMf(CliTest):
         self.assertEqual(list(areas), ["wedge", "wedge#2", "wedge#3"])
         for name, times in [("wedge", 4), ("wedge#2", 4), ("wedge#3", 1)]:
             self.assertAlmostEqual(areas[name], times * (1.5 + SLANTED), 4)
-        self.assertTrue(scene["closed"])
+        self.assertTrue(scene["watertight"])
         self.assertNotIn("faces inwards", self.run_program("info", "a.3mf").err)  # the mirrored one neither
         # The rows turn an axis: x becomes y.
         scene = self.scene(model(WEDGE, '<item objectid="1" transform="0 2 0 3 0 0 0 0 1 0 0 0"/>'))

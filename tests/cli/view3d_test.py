@@ -57,7 +57,7 @@ class View3d(CliTest):
         self.put(lines(CUBE_VERTICES, walls()))
         scene = self.scene()
         self.assertEqual([s["name"] for s in scene["surfaces"]], WALLS)
-        self.assertEqual(scene["closed"], True)
+        self.assertEqual(scene["watertight"], True)
         # Opposite sides of a cube (Howell, configuration C-11 with a = b = c): the manual of View3D
         # gives 0.199824896.
         opposite = 2 / math.pi * (math.log(2 / math.sqrt(3)) + math.sqrt(8) * math.atan(1 / math.sqrt(2))
@@ -143,7 +143,7 @@ class View3d(CliTest):
         self.put(text)
         scene = self.scene()
         self.assertEqual([s["name"] for s in scene["surfaces"]], WALLS)
-        self.assertEqual(scene["closed"], True)  # corners meet to the bit
+        self.assertEqual(scene["watertight"], True)  # corners meet to the bit
         self.assertEqual([scene["lower_m"], scene["upper_m"]], [[0, 0, 0], [1, 1, 1]])
         numpy.testing.assert_allclose(self.factors("--faces-as-patches"), expected, atol=1e-9)
 

@@ -57,7 +57,7 @@ class Vtk(CliTest):
         self.assertEqual(self.areas(), {"a": 10})
         run = self.run_program("info", "a.vtk")
         self.assertIn("no faces, volume elements alone (2)", run.err)
-        self.assertRegex(run.out, r"closed +yes")
+        self.assertRegex(run.out, r"watertight +yes")
         self.says(": cell 0: a volume of 5 points has too few; correct or remove it",
                   LEGACY + "UNSTRUCTURED_GRID\n" + points + "CELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n12\n")
         self.says(": no faces, volume elements alone; export the surface as polygons",

@@ -8,7 +8,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "formfactor/closed_scene.h"
 #include "formfactor/computed_factors.h"
 #include "formfactor/exact/assembly/error_figure.h"
 #include "formfactor/exact/assembly/row_tasks.h"
@@ -510,18 +509,6 @@ TEST(ErrorSums, FiguresFollowKnownErrors) {
   closed.addAndScale(0, row, 0.5);
   closed.figures(area, 1e-3, figure);
   EXPECT_NEAR(figure[0], 0.06 * 0.25e-3, 1e-16);
-}
-
-TEST(ClosedScene, IsRecognisedByHemicubesThatSeeNoSky) {
-  Progress silent;
-  EXPECT_TRUE(closedByEye(test::roomWithBlock(2).build(), silent));
-  MeshBuilder outside;
-  outside.box("room", {0, 0, 0}, {1, 1, 1}, 1, true);
-  outside.box("block", {2.4, 0.4, 0.4}, {2.6, 0.6, 0.6}, 1);
-  EXPECT_FALSE(closedByEye(outside.build(), silent));
-  MeshBuilder open;
-  open.box("room", {0, 0, 0}, {1, 1, 1}, 1, true, false);
-  EXPECT_FALSE(closedByEye(open.build(), silent));
 }
 
 }  // namespace

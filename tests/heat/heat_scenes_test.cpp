@@ -191,6 +191,36 @@ TEST(HeatScenes, SharedUnknownsGiveTheFiguresOfSurfaces) {
   }
 }
 
+// An adiabatic plate 3 mm above one at 77 K, both black and 1 m wide, under a sky of 300 K. The gap
+// has 5.956e-3 of its view (Howell C-11): T^4 = .994044 77^4 + .005956 300^4.
+TEST(HeatScenes, AThinGapLetsTheSkyIn) {
+  Triangles t;
+  const Index low = t.surface("low");
+  t.quad(low, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  t.quad(t.surface("high"), {0, 0, .003}, {0, 1, 0}, {1, 0, 0});
+  Progress quiet;
+  Solved s;
+  // A patch a plate has the closed form; triangles would not.
+  MeshOptions options;
+  options.patches = 2;
+  s.mesh = meshScene(t.scene(), options, quiet).mesh;
+  HeatOptions heat;
+  heat.sky_temperature = 300;
+  HeatCondition adiabatic = test::condition("high", 1);
+  for (const FormFactorMethod method : {FormFactorMethod::exact, FormFactorMethod::rays}) {
+    FormFactorOptions by;
+    by.method = method;
+    by.tolerance = 1e-4;
+    s.factors = computeFormFactors(s.mesh, by, quiet);
+    s.heat =
+        solveHeat(s.factors, inOrder({test::at("low", 1, 77), adiabatic}), s.mesh, heat, quiet);
+    s.surfaces = heatBySurface(s.heat, s.mesh, s.factors);
+    // 1e-4 of the gap's share is .1 K by rays of 1e-4 of the row.
+    EXPECT_NEAR(s.surfaces[1].temperature, 95.50, method == FormFactorMethod::exact ? .005 : .5);
+    EXPECT_TRUE(s.heat.summary.usable());
+  }
+}
+
 /// A box whose walls and floor are one object.
 Scene namedScene() {
   Triangles t;

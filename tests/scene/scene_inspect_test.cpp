@@ -39,7 +39,7 @@ TEST(SceneInspect, MeasuresSurfaces) {
   EXPECT_EQ(info.lower, Vec3(0, 0, 0));
   EXPECT_EQ(info.upper, Vec3(6, 2, 0));
   EXPECT_EQ(info.triangles, 2u + 4u);
-  EXPECT_FALSE(info.closed);
+  EXPECT_FALSE(info.watertight);
   EXPECT_EQ(info.open_edges, 4u + 6u);
 }
 
@@ -50,7 +50,7 @@ TEST(SceneInspect, AGoodSceneHasNoProblems) {
   room.builder.box(block, {0.2, 0.2, 0}, {0.7, 0.9, 1});  // stands on the floor
   for (const Scene& scene : {room.builder.scene(), turned(room.builder.scene())}) {
     const SceneInfo info = inspectScene(scene);
-    EXPECT_TRUE(info.closed) << "the room encloses the rest";
+    EXPECT_TRUE(info.watertight) << "the room encloses the rest";
     ASSERT_EQ(info.problems.size(), 1u) << allNotes(info.problems);
     EXPECT_NOTE(info.problems, "lamp/lamp overlaps walls/walls in one plane on 1 m^2: the emitter",
                 Severity::info);
@@ -67,7 +67,7 @@ TEST(SceneInspect, ChecksDoNotDependOnScaleOrPlace) {
                                        moved(scene, {1e6, -1e6, 1e6})};
   for (const Scene& variant : variants) {
     const SceneInfo info = inspectScene(variant);
-    EXPECT_TRUE(info.closed);
+    EXPECT_TRUE(info.watertight);
     EXPECT_EQ(info.open_edges, 4u);
     EXPECT_NOTE(info.problems, "block/block: closed, faces inwards and holds nothing",
                 Severity::warning);
@@ -77,7 +77,7 @@ TEST(SceneInspect, ChecksDoNotDependOnScaleOrPlace) {
 
 TEST(SceneInspect, TellsClosedScenesFromOpenOnes) {
   Room room;
-  EXPECT_TRUE(inspectScene(room.builder.scene()).closed);
+  EXPECT_TRUE(inspectScene(room.builder.scene()).watertight);
   EXPECT_EQ(inspectScene(room.builder.scene()).open_edges, 0u);
   // The first five faces: a side is missing.
   SceneBuilder open;
@@ -90,11 +90,11 @@ TEST(SceneInspect, TellsClosedScenesFromOpenOnes) {
     open.face(walls, corners);
   }
   const SceneInfo info = inspectScene(open.scene());
-  EXPECT_FALSE(info.closed);
+  EXPECT_FALSE(info.watertight);
   EXPECT_EQ(info.open_edges, 4u);
   // Something outside the room can see the sky.
   room.builder.level(room.builder.surface("outside"), 5, 5, 6, 6, 0);
-  EXPECT_FALSE(inspectScene(room.builder.scene()).closed);
+  EXPECT_FALSE(inspectScene(room.builder.scene()).watertight);
 }
 
 TEST(SceneInspect, WeldsWithinTheToleranceOnly) {
@@ -104,7 +104,7 @@ TEST(SceneInspect, WeldsWithinTheToleranceOnly) {
     const Index walls = builder.surface("walls", 0.5, 1);
     builder.box(walls, {0, 0, 0}, {2, 3, 4}, false);
     for (std::size_t k = 20; k < 24; ++k) builder.scene().vertices[k].z += gap;  // the ceiling
-    EXPECT_EQ(inspectScene(builder.scene()).closed, closed) << "gap " << gap;
+    EXPECT_EQ(inspectScene(builder.scene()).watertight, closed) << "gap " << gap;
   }
 }
 
@@ -130,11 +130,11 @@ TEST(SceneInspect, NamesFacesThatTurnAgainstTheirNeighbours) {
   const SceneInfo info = inspectScene(scene);
   EXPECT_NOTE(info.problems, "door/door: 1 of 1 faces turn their backs", Severity::warning);
   EXPECT_EQ(findNote(info.problems, "walls/walls:"), nullptr);
-  EXPECT_FALSE(info.closed);
+  EXPECT_FALSE(info.watertight);
   // Two-sided, it does not matter.
   for (Material& material : scene.materials) material.two_sided = true;
   EXPECT_EQ(problemsOf(scene), "");
-  EXPECT_TRUE(inspectScene(scene).closed);
+  EXPECT_TRUE(inspectScene(scene).watertight);
 }
 
 TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
@@ -323,13 +323,13 @@ TEST(SceneInspect, KnowsTheCornellBox) {
   // The published left wall is 3.2 mm off planar in a box of 559 mm; the lamp measures 130 x 105.
   const SceneInfo info =
       inspectScene(loadScene(RADIOSITY_SOURCE_DIR "/data/cornell-box-closed.obj"));
-  EXPECT_TRUE(info.closed);
+  EXPECT_TRUE(info.watertight);
   EXPECT_NOTE(info.problems, "left_wall/red: 1 of 1 faces are not planar, by up to 0.003",
               Severity::info);
   EXPECT_NOTE(info.problems, "lamp/light overlaps ceiling/white in one plane on 0.01365 m^2",
               Severity::info);
   EXPECT_EQ(info.problems.size(), 2u) << allNotes(info.problems);
-  EXPECT_FALSE(inspectScene(loadScene(RADIOSITY_SOURCE_DIR "/data/cornell-box.obj")).closed);
+  EXPECT_FALSE(inspectScene(loadScene(RADIOSITY_SOURCE_DIR "/data/cornell-box.obj")).watertight);
 }
 
 }  // namespace

@@ -212,6 +212,35 @@ TEST(SolveEnergy, ClosesIfFIsReciprocal) {
   }
 }
 
+// A closed box of which one wall has lost its row, by a fault of the method: its light is nowhere.
+TEST(SolveEnergy, ThatDoesNotBalanceIsNotUsable) {
+  // F of a cube's faces, nearly (Howell C-11, C-14): .2 each.
+  Matrix f = Matrix::Constant(6, 6, .2);
+  f.diagonal().setZero();
+  const std::vector<double> area(6, 1.0), rho(6, .5);
+  std::vector<double> emission(6, 0.0);
+  emission[0] = 1;
+  for (const FactorsFrom method : {FactorsFrom::exact, FactorsFrom::rays, FactorsFrom::hemicube}) {
+    auto factors = test::symmetricFactorsFrom(f, area);
+    factors.method = method;
+    Progress quiet;
+    const SolveOptions options = test::options(Solver::direct, 1e-12);
+    EXPECT_TRUE(solve(factors, rho, emission, 1, options, quiet).summary.usable());
+    Matrix open = f;
+    open.row(3).setZero();
+    open.col(3).setZero();
+    factors = test::symmetricFactorsFrom(open, area);
+    factors.method = method;
+    EXPECT_TRUE(solve(factors, rho, emission, 1, options, quiet).summary.usable()) << "to the sky";
+    std::fill(factors.sky.begin(), factors.sky.end(), 0.0);
+    const Solution s = solve(factors, rho, emission, 1, options, quiet);
+    EXPECT_EQ(s.summary.status, SolveStatus::unbalanced);
+    EXPECT_FALSE(s.summary.usable());
+    EXPECT_NE(s.summary.message.find("energy does not balance"), std::string::npos);
+    EXPECT_NE(s.summary.message.find("not usable; give "), std::string::npos);
+  }
+}
+
 // With reciprocal F the imbalance of an unconverged B is the residual's power, sum A_i r_i.
 TEST(SolveEnergy, ImbalanceIsTheResidualsPower) {
   test::Random random(10);

@@ -14,6 +14,7 @@
 #include "base/figure_text.h"
 #include "base/hand_out.h"
 #include "base/parallel.h"
+#include "formfactor/closed_rows.h"
 #include "formfactor/hemicube/gpu_rows.h"
 #include "formfactor/hemicube/kept_row.h"
 #include "formfactor/hemicube/row_builder.h"
@@ -26,6 +27,10 @@
 
 namespace radiosity {
 namespace {
+
+/// Of the view of a closed row a share this large may show between faces, which meet but for
+/// rounding: some pixels.
+constexpr double kMostLeaks = 1e-3;
 
 /// Memory in which a thread stores rows, and their counts.
 struct RowStore {
@@ -44,29 +49,33 @@ struct Worker {
 struct Rows {
   const HemicubeScene& scene;
   const KnownEntries& known;  ///< by patch
+  ClosedRows& closed;
   RowJournal* journal;
   FormFactors& result;
   std::vector<std::vector<SeenBack>>& seen_backs;
   std::vector<std::uint8_t> made;  ///< by row; 1 also for empty ones
 };
 
-/// Stores row i as it was seen, or with its near entries corrected.
-void storeRow(std::size_t i, const HemicubeView& view, const NearPairs* near_pairs, PackedRow& row,
-              FormFactors& result, std::vector<SeenBack>& seen_backs, HemicubeRowCounts& counts) {
+/// Stores row i as it was seen, but without `leaks`, a part of its sky, or with its near entries
+/// corrected.
+void storeRow(std::size_t i, const HemicubeView& view, double leaks, const NearPairs* near_pairs,
+              PackedRow& row, FormFactors& result, std::vector<SeenBack>& seen_backs,
+              HemicubeRowCounts& counts) {
   const std::size_t n = result.fronts.size();
   row.pack(view, n);
-  result.fronts[i] = view.fronts;
-  double rest = 1;
+  double rest = 1 / (1 - leaks);
+  for (double& value : row.values) value *= rest;
+  result.fronts[i] = rest * view.fronts;
   if (near_pairs != nullptr) {
     const NearPairs::Outcome outcome = near_pairs->correct(i, row);
     counts.near_pairs += outcome.replaced;
     counts.capped += outcome.capped;
-    rest = outcome.rest;
+    rest *= outcome.rest;
     result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
   }
   result.matrix.setRow(i, row.columns, row.values);
   result.backs[i] = rest * view.backs;
-  result.sky[i] = rest * view.sky;
+  result.sky[i] = rest * (view.sky - leaks);
   for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
     if (view.items[item] > 0) seen_backs.push_back({Index(item - n), rest * view.items[item]});
   }
@@ -104,7 +113,7 @@ void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
   });
   addKnownBefore(result.fronts.size());
   if (whole) {
-    const RowAccount account = rows.known.account(i, area, result.sky[i] == 0);
+    const RowAccount account = rows.known.account(i, area, rows.closed.closed(i));
     result.fronts[i] = account.fronts;
     result.backs[i] = account.backs;
     result.sky[i] = account.sky;
@@ -143,7 +152,8 @@ void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, const Hemicu
                RowStore& store) {
   HemicubeRowCounts counts;
   const NearPairs* near_pairs = rows.scene.near_pairs ? &*rows.scene.near_pairs : nullptr;
-  storeRow(i, view, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
+  const double leaks = rows.closed.keeps(i, view.sky, kMostLeaks) ? view.sky : 0;
+  storeRow(i, view, leaks, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
   counts.drawn = drawn;
   if (rows.journal != nullptr) keepRow(*rows.journal, i, rows.result, rows.seen_backs[i], counts);
   replaceKnown(rows, i, store.row);
@@ -167,7 +177,9 @@ HemicubeRowCounts takeRows(Rows& rows, RowRange range, const Progress& progress)
     if (rows.made[i] != 0 || rows.journal == nullptr) return;
     RowStore& store = stores.local();
     rows.made[i] = takeRow(*rows.journal, i, rows.result, rows.seen_backs[i], store.counts) ? 1 : 0;
-    if (rows.made[i] != 0) replaceKnown(rows, i, store.row);
+    if (rows.made[i] == 0) return;
+    rows.closed.keeps(i, rows.result.sky[i], 0);
+    replaceKnown(rows, i, store.row);
   });
   HemicubeRowCounts all;
   for (const RowStore& store : stores) all += store.counts;
@@ -268,6 +280,7 @@ HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
       result.backs[i] = bytes.get<double>();
       result.sky[i] = bytes.get<double>();
       rows.seen_backs[i] = bytes.getArray<SeenBack>();
+      rows.closed.keeps(i, result.sky[i], 0);  // another process may have found it open
     }
   };
   handOut(processes, work, progress);
@@ -292,10 +305,11 @@ KnownEntries knownByPatch(std::vector<KnownRow> rows, std::size_t patches, Proce
 }
 
 HemicubeRowCounts fillRows(const HemicubeScene& scene, const KnownEntries& known,
-                           RowJournal* journal, Processes* processes, FormFactors& result,
-                           std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
+                           ClosedRows& closed, RowJournal* journal, Processes* processes,
+                           FormFactors& result, std::vector<std::vector<SeenBack>>& seen_backs,
+                           Progress& progress) {
   const std::size_t n = result.fronts.size();
-  Rows rows{scene, known, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
+  Rows rows{scene, known, closed, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
   Workers workers([&] { return Worker{scene.rows.makeHemicube(), {}, {}}; });
   progress.begin("form factors", n, "rows", rowsThere(scene.rows, n, journal));
   HemicubeRowCounts counts;
@@ -325,7 +339,6 @@ void reportCounts(const HemicubeRowCounts& all, std::size_t n, FormFactorReport&
   report.skipped_face = counts.skipped_face;
   report.skipped_hidden = counts.skipped_hidden;
   report.pixels = counts.pixels;
-  report.closed = counts.hemicubes > 0 && counts.sky_pixels == 0;
 }
 
 /// Form factors without rows yet.
@@ -406,7 +419,10 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   if (!options.exact_rows.empty()) report.exact_rows = known_rows.size();
   const KnownEntries known = knownByPatch(std::move(known_rows), n, processes);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  reportCounts(fillRows(scene, known, journal, processes, result, seen_backs, progress), n, report);
+  ClosedRows closed(mesh, false);
+  reportCounts(fillRows(scene, known, closed, journal, processes, result, seen_backs, progress), n,
+               report);
+  closed.report(mesh, report);
   if (processes != nullptr) {
     result.matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(
         *processes, std::move(result.matrix), [&progress] { progress.check(); }));
@@ -434,7 +450,8 @@ ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOpti
   FormFactors result = emptyRows(mesh, options, nullptr);
   std::vector<std::vector<SeenBack>> seen_backs(mesh.size());
   const KnownEntries known = knownByPatch({}, mesh.size(), &processes);
-  fillRows(scene, known, journal, &processes, result, seen_backs, progress);
+  ClosedRows closed(mesh, false);
+  fillRows(scene, known, closed, journal, &processes, result, seen_backs, progress);
   return std::move(result.matrix);
 }
 

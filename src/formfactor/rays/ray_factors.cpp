@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/scratch_rows.h"
+#include "formfactor/closed_rows.h"
 #include "formfactor/rays/ray_rounds.h"
 #include "formfactor/rays/shared_rays.h"
 #include "formfactor/row_accounts.h"
@@ -23,6 +24,9 @@ namespace {
 
 /// The tolerance to which single precision can restore rows.
 constexpr double kClosureTolerance = 1e-9;
+/// Of the rays of a closed row a share this large may slip between faces, which meet but for
+/// rounding.
+constexpr double kMostLeaks = 1e-3;
 
 /// What rows see beside the matrix, and the errors of its shares: K values each.
 struct Beside {
@@ -53,8 +57,9 @@ double mergedError(double factor, const std::array<double, 2>& density,
 
 /// Fronts, backs and sky of each row, by its own rays alone. Known entries replace the rays that
 /// ended there; all other rays share the rest of the row.
-void setAccounts(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
-                 ScratchMemory* scratch, FormFactors& result, Beside& beside) {
+void setAccounts(const RayScene& scene, const KnownEntries& known, const ClosedRows& closed,
+                 const std::vector<RayRow>& rows, ScratchMemory* scratch, FormFactors& result,
+                 Beside& beside) {
   const std::size_t n = rows.size();
   parallelFor(n, 64, [&](std::size_t k) {
     const RayRow& row = rows[k];
@@ -62,18 +67,19 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
     const Index i = scene.order()[k];
     if (!(row.counted() > 0)) return;
     if (known.rowAt(k) != nullptr) {
-      const RowAccount account = known.account(k, scene.area()[k], result.report.closed);
+      const RowAccount account = known.account(k, scene.area()[k], closed.closed(i));
       result.fronts[i] = account.fronts;
       result.backs[i] = account.backs;
       result.sky[i] = account.sky;
       beside.seen_backs[i] = known.rowAt(k)->backs;
       for (const KnownEntries::Entry& entry : known.at(k)) {
-        beside.sky_error[i] += entry.error / scene.area()[k];
+        if (!closed.closed(i)) beside.sky_error[i] += entry.error / scene.area()[k];
       }
       return;
     }
     const double known_share = known.share(k, scene.area()[k]);
-    double counted = row.counted();
+    const double sky = row.countedSky();
+    double counted = row.counted() - (closed.closed(i) ? sky : 0.0);  // leaks count for nothing
     for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < n; ++e) {
       if (known.rowAt(row.columns[e]) == nullptr) continue;
       counted -= double(row.hits[e][0]) + double(row.hits[e][1]);
@@ -90,12 +96,13 @@ void setAccounts(const RayScene& scene, const KnownEntries& known, const std::ve
       }
     }
     result.fronts[i] = fronts;
-    result.sky[i] = row.countedSky() * each;
-    // A row that saw no sky may have missed it; most scenes have no backs to be missed.
-    beside.sky_error[i] = shareError(result.sky[i], each);
+    if (!closed.closed(i)) {
+      result.sky[i] = sky * each;
+      beside.sky_error[i] = shareError(result.sky[i], each);  // that saw none may have missed it
+    }
+    // Most scenes have no backs to be missed.
     if (result.backs[i] > 0) beside.backs_error[i] = shareError(result.backs[i], each);
   });
-  if (result.report.closed) beside.sky_error.assign(n, 0.0);  // there is none to be missed
 }
 
 /// Notes rows that have stayed unknown. `usual`: the norm of a usual row.
@@ -205,9 +212,9 @@ void moveBacks(std::size_t i, double gained, Beside& beside, FormFactors& result
 }
 
 /// By its own rays, fronts, backs and sky of a row sum to 1; merging has moved the fronts. The
-/// difference goes to fronts, backs and, in an open scene, the sky, each by its error.
-void close(const UncertainEntries& uncertain, ClosureMode mode, Beside& beside, FormFactors& result,
-           Progress& progress) {
+/// difference goes to fronts, backs and, in open rows, the sky, each by its error.
+void close(const ClosedRows& closed, const UncertainEntries& uncertain, ClosureMode mode,
+           Beside& beside, FormFactors& result, Progress& progress) {
   if (mode == ClosureMode::off) {
     result.fronts = result.matrix.rowSums();
     return;
@@ -226,21 +233,21 @@ void close(const UncertainEntries& uncertain, ClosureMode mode, Beside& beside, 
   const std::vector<double> sums = result.matrix.rowSums();
   for (std::size_t i = 0; i < n; ++i) {
     // Keep a sum aimed at, if nothing else has moved: storing rounds those of the matrix.
-    if (report.closed && report.closure.reached && !(beside.backs_error[i] > 0)) continue;
+    if (closed.closed(i) && report.closure.reached && !(beside.backs_error[i] > 0)) continue;
     moveBacks(i, result.fronts[i] - sums[i], beside, result);
     result.fronts[i] = sums[i];
   }
 }
 
-/// Sets the sky to the rest of each row, and to 0 in a closed scene.
-void balance(FormFactors& result) {
+/// Sets the sky to the rest of each open row. What a closed one misses, or any has beyond 1, is its
+/// error.
+void balance(const ClosedRows& closed, FormFactors& result) {
   FormFactorReport& report = result.report;
   for (std::size_t i = 0; i < result.fronts.size(); ++i) {
     if (result.fronts[i] + result.backs[i] + result.sky[i] == 0) continue;
     const double rest = 1 - result.fronts[i] - result.backs[i];
-    report.largest_row_error =
-        std::max(report.largest_row_error, report.closed ? std::abs(rest) : -rest);
-    result.sky[i] = report.closed ? 0.0 : rest;
+    result.sky[i] = closed.closed(i) ? 0.0 : std::max(0.0, rest);
+    report.largest_row_error = std::max(report.largest_row_error, std::abs(rest - result.sky[i]));
   }
 }
 
@@ -262,9 +269,17 @@ void share(Processes& processes, Progress& progress, ExchangeMatrix& matrix) {
   matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(processes, std::move(own), waiting));
 }
 
-bool seesSky(const std::vector<RayRow>& rows) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [](const RayRow& row) { return row.countedSky() > 0; });
+/// The rows that are closed, and the count of rays that leave them.
+ClosedRows closedRows(const PatchMesh& mesh, const RayScene& scene, const std::vector<RayRow>& rows,
+                      FormFactorReport& report) {
+  ClosedRows closed(mesh, true);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (!closed.keeps(scene.order()[k], rows[k].skyShare(), kMostLeaks)) continue;
+    report.rays.leaked += rows[k].sky[0] + rows[k].sky[1];
+  }
+  report.rays.lost += report.rays.leaked;
+  closed.report(mesh, report);
+  return closed;
 }
 
 }  // namespace
@@ -292,7 +307,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   std::vector<RayRow> rows =
       castRows(scene, known, aim, report.rays, progress, journal, scratch.get(), processes);
   noteLoosened(options, report);
-  report.closed = scene.provedClosed() || !seesSky(rows);
+  const ClosedRows closed = closedRows(mesh, scene, rows, report);
   result.matrix =
       ExchangeMatrix::symmetric(std::move(area), scene.order(), options.storedPrecision(), scratch);
   result.fronts.assign(n, 0.0);
@@ -302,14 +317,14 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   Beside beside(n);
   UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
-  setAccounts(scene, known, rows, scratch.get(), result, beside);
+  setAccounts(scene, known, closed, rows, scratch.get(), result, beside);
   store(scene, known, rows, aim, scratch.get(), result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();
   report.rays.seconds_merge += closing - storing;
-  close(uncertain, options.closure, beside, result, progress);
-  balance(result);
+  close(closed, uncertain, options.closure, beside, result, progress);
+  balance(closed, result);
   accountForBacks(mesh, scene.order(), result.matrix.area(), beside.seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
   if (processes != nullptr) share(*processes, progress, result.matrix);

@@ -331,7 +331,6 @@ class Rounds {
       const RayRow& row = rows_[k];
       report_.lost += row.lost[0] + row.lost[1];
       report_.short_rows += isGoodEnough(k) ? 0 : 1;
-      report_.leaked += row.leaked;
     }
   }
 

@@ -177,7 +177,6 @@ void RayRow::add(const RayRow& more) {
     sky[r] += more.sky[r];
     lost[r] += more.lost[r];
   }
-  leaked += more.leaked;
   rays = more.rays;
   window = more.window;
 }

@@ -29,7 +29,6 @@ struct RayRow {
   std::uint32_t rays = 0;  ///< cast in each replicate
   std::array<std::uint32_t, kReplicates> sky{};
   std::array<std::uint32_t, kReplicates> lost{};  ///< no true hits: they do not count
-  std::uint32_t leaked = 0;  ///< of these, those out of a closed scene; of both
   /// The share of the hemisphere that rays go into; the rest is proved to be sky. Each ray stands
   /// for 1 / window of those that would go everywhere.
   double window = 1;

@@ -36,8 +36,7 @@ RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mes
     seed_.push_back(patchSeed(mesh, by_identity.first_patch[k], with_seed));
   }
   std::optional<Enclosures> found;
-  proved_closed_ = enclosuresOf(mesh, found).proved_closed;
-  if (!proved_closed_) windows_.emplace(caster_.embree());
+  if (!enclosuresOf(mesh, found).closed) windows_.emplace(caster_.embree());
 }
 
 /// Aims rays at what they can meet where that takes up little of the hemisphere. Returns the share
@@ -79,12 +78,7 @@ void RayScene::addCounts(std::array<RayCaster::Counts, kReplicates>& counts, Ray
       of.add(column < n ? order_[column] : column, row.hits[e][r]);
     }
     row.lost[r] += of.own;
-    if (proved_closed_) {
-      row.lost[r] += of.sky;
-      row.leaked += of.sky;
-    } else {
-      row.sky[r] += of.sky;
-    }
+    row.sky[r] += of.sky;
   }
   std::vector<Index> columns;
   for (const RayCaster::Counts& of : counts) {

@@ -27,9 +27,6 @@ class RayScene {
   const std::vector<Index>& position() const { return position_; }
   /// Areas by position, m^2.
   const std::vector<double>& area() const { return area_; }
-  /// True if no ray can get out: one that does has passed through a gap.
-  bool provedClosed() const { return proved_closed_; }
-
   /// Continues a row, by position, to `rays` rays in each replicate. If `progress` is cancelled,
   /// returns early with a useless row. Thread-safe for different rows.
   void cast(std::size_t position, std::uint32_t rays, RayRow& row, const Progress& progress) const;
@@ -46,7 +43,6 @@ class RayScene {
   std::vector<Index> position_;  ///< of each unknown in it
   std::vector<double> area_;
   std::vector<std::uint64_t> seed_;  ///< by position
-  bool proved_closed_ = false;
   std::optional<RayWindows> windows_;  ///< of an open scene
 };
 

@@ -44,7 +44,6 @@ void putRayRow(const RayRow& row, ByteWriter& bytes) {
   bytes.put(row.rays);
   bytes.put(row.sky);
   bytes.put(row.lost);
-  bytes.put(row.leaked);
   bytes.put(row.window);
   bytes.putVarint(row.columns.size());
   Index before = 0;
@@ -60,7 +59,6 @@ RayRow takeRayRow(ByteReader& bytes) {
   row.rays = bytes.get<std::uint32_t>();
   row.sky = bytes.get<std::array<std::uint32_t, kReplicates>>();
   row.lost = bytes.get<std::array<std::uint32_t, kReplicates>>();
-  row.leaked = bytes.get<std::uint32_t>();
   row.window = bytes.get<double>();
   // An entry takes a byte or more: there are no more entries than bytes left.
   const std::size_t entries = std::min<std::size_t>(bytes.getVarint(), bytes.left());

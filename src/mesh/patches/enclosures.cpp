@@ -1,6 +1,7 @@
 #include "mesh/patches/enclosures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <compare>
 #include <glm/common.hpp>
@@ -19,9 +20,6 @@
 
 namespace radiosity {
 namespace {
-
-/// The most solid angles of triangles in the proof that a scene is closed: about a second.
-constexpr std::size_t kMostSolidAngles = 10000000;
 
 /// A polygon that runs along an edge, from its smaller vertex to the larger or back.
 struct EdgeUser {
@@ -42,15 +40,6 @@ void forRuns(std::size_t count, const Same& same, const Visit& visit) {
     while (to < count && same(from, to)) ++to;
     visit(from, to);
     from = to;
-  }
-}
-
-/// Calls visit(corner) for the corners of all loops of a polygon.
-template <class Visit>
-void forCorners(const PatchMesh& mesh, Index p, const Visit& visit) {
-  const PlanarPolygons& all = mesh.polygons;
-  for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
-    for (const Index v : all.loop(l)) visit(v);
   }
 }
 
@@ -83,46 +72,23 @@ class EnclosureSearch {
     progress_.check();
     findSurfaces();
     progress_.check();
-    found_.proved_closed = provesClosed();
+    found_.enclosed = enclosedPatches(mesh_, first_, coincidence_, progress_);
+    found_.closed = std::ranges::any_of(mesh_.area, [](double a) { return a > 0; }) &&
+                    std::ranges::all_of(found_.enclosed, [](auto e) { return e != 0; });
     return std::move(found_);
   }
 
  private:
   void findCovered() {
-    const std::size_t count = mesh_.polygons.size();
-    std::vector<std::size_t> begin{0};
-    std::vector<Index> corners;
-    begin.reserve(count + 1);
-    corners.reserve(mesh_.polygons.corners.size());
-    for (Index p = 0; p < count; ++p) {
-      forCorners(mesh_, p, [&](Index v) { corners.push_back(first_[v]); });
-      std::sort(corners.begin() + std::ptrdiff_t(begin.back()), corners.end());
-      begin.push_back(corners.size());
-    }
-    const auto cornersOf = [&](Index p) {
-      return std::span(corners).subspan(begin[p], begin[p + 1] - begin[p]);
-    };
-    std::vector<Index> order(count);
-    std::iota(order.begin(), order.end(), Index(0));
-    parallelSort(order, [&](Index a, Index b) {
-      const auto key = std::lexicographical_compare_three_way(
-          cornersOf(a).begin(), cornersOf(a).end(), cornersOf(b).begin(), cornersOf(b).end());
-      return std::is_neq(key) ? std::is_lt(key) : a < b;
-    });
     const std::vector<Vec3>& normal = mesh_.polygons.normal;
-    found_.covered.assign(count, 0);
-    forRuns(
-        count,
-        [&](std::size_t i, std::size_t k) {
-          return std::ranges::equal(cornersOf(order[i]), cornersOf(order[k]));
-        },
-        [&](std::size_t from, std::size_t to) {
-          const auto same = std::span(order).subspan(from, to - from);
-          for (const Index p : same) {
-            found_.covered[p] = std::ranges::any_of(
-                same, [&](Index q) { return glm::dot(normal[p], normal[q]) < 0; });
-          }
-        });
+    const std::vector<Index> same = firstOnSameCorners(mesh_.polygons, first_);
+    // By the first one: whether a polygon faces with it, and whether one faces it.
+    std::vector<std::array<std::uint8_t, 2>> faces(normal.size(), {0, 0});
+    const auto turned = [&](Index p) { return glm::dot(normal[p], normal[same[p]]) < 0 ? 1u : 0u; };
+    for (Index p = 0; p < normal.size(); ++p) faces[same[p]][turned(p)] = 1;
+    for (Index p = 0; p < normal.size(); ++p) {
+      found_.covered.push_back(faces[same[p]][1 - turned(p)]);
+    }
   }
 
   /// Joins polygons across edges that exactly two of them share, once each way. If a set of
@@ -196,58 +162,6 @@ class EnclosureSearch {
     found_.surfaces.push_back(std::move(surface));
   }
 
-  /// Whether every patch lies on a room or in one. Polygons are cut where they cross. So a set of
-  /// polygons that are joined by vertices not on the rooms lies on one side of each room, and one
-  /// of its points decides.
-  bool provesClosed() {
-    std::vector<const ClosedSurface*> rooms;
-    std::vector<std::uint8_t> on_room(mesh_.polygons.size(), 0);
-    std::size_t corners = 0;
-    for (const ClosedSurface& surface : found_.surfaces) {
-      if (surface.is_solid) continue;
-      rooms.push_back(&surface);
-      for (const Index p : surface.polygons) {
-        on_room[p] = 1;
-        forCorners(mesh_, p, [&](Index) { ++corners; });
-      }
-    }
-    if (rooms.empty()) return false;
-    const std::vector<Vec3> points = onePerSet(on_room);
-    if (points.size() * corners > kMostSolidAngles) return false;
-    return std::all_of(points.begin(), points.end(), [&](const Vec3& point) {
-      progress_.check();
-      return std::any_of(rooms.begin(), rooms.end(), [&](const ClosedSurface* room) {
-        // The number is -1 within a room, but for rounding; on its surface it is not.
-        return std::abs(windingNumber(mesh_, room->polygons, point) + 1) < 0.01;
-      });
-    });
-  }
-
-  std::vector<Vec3> onePerSet(const std::vector<std::uint8_t>& on_room) const {
-    std::vector<std::uint8_t> of_room(mesh_.vertices.size(), 0);
-    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
-      if (on_room[p] != 0) forCorners(mesh_, p, [&](Index v) { of_room[first_[v]] = 1; });
-    }
-    UnionFind sets(mesh_.polygons.size());
-    std::vector<Index> user(mesh_.vertices.size(), kNone);
-    for (Index p = 0; p < mesh_.polygons.size(); ++p) {
-      forCorners(mesh_, p, [&](Index v) {
-        const Index point = first_[v];
-        if (of_room[point] != 0) return;
-        if (user[point] != kNone) sets.unite(p, user[point]);
-        user[point] = p;
-      });
-    }
-    std::vector<std::uint8_t> known(mesh_.polygons.size(), 0);
-    std::vector<Vec3> points;
-    for (std::size_t i = 0; i < mesh_.size(); ++i) {
-      const Index p = mesh_.polygon[i];
-      if (p == kNone || on_room[p] != 0) continue;
-      if (std::exchange(known[sets.find(p)], 1) == 0) points.push_back(mesh_.centroid[i]);
-    }
-    return points;
-  }
-
   const PatchMesh& mesh_;
   Progress& progress_;
   std::vector<Index> first_;
@@ -278,6 +192,37 @@ std::vector<Index> firstAtSamePoint(const PatchMesh& mesh) {
     first[order[k]] = same ? first[order[k - 1]] : order[k];
   }
   return first;
+}
+
+std::vector<Index> firstOnSameCorners(const PlanarPolygons& polygons,
+                                      std::span<const Index> first) {
+  std::vector<std::size_t> begin{0};
+  std::vector<Index> corners;
+  begin.reserve(polygons.size() + 1);
+  corners.reserve(polygons.corners.size());
+  for (Index p = 0; p < polygons.size(); ++p) {
+    for (std::size_t l = polygons.loopBegin(p); l < polygons.loopEnd(p); ++l) {
+      for (const Index v : polygons.loop(l)) corners.push_back(first[v]);
+    }
+    std::sort(corners.begin() + std::ptrdiff_t(begin.back()), corners.end());
+    begin.push_back(corners.size());
+  }
+  const auto cornersOf = [&](Index p) {
+    return std::span(corners).subspan(begin[p], begin[p + 1] - begin[p]);
+  };
+  std::vector<Index> order(polygons.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  parallelSort(order, [&](Index a, Index b) {
+    const auto key = std::lexicographical_compare_three_way(
+        cornersOf(a).begin(), cornersOf(a).end(), cornersOf(b).begin(), cornersOf(b).end());
+    return std::is_neq(key) ? std::is_lt(key) : a < b;
+  });
+  std::vector<Index> same(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool again = k > 0 && std::ranges::equal(cornersOf(order[k - 1]), cornersOf(order[k]));
+    same[order[k]] = again ? same[order[k - 1]] : order[k];
+  }
+  return same;
 }
 
 double windingNumber(const PatchMesh& mesh, std::span<const Index> polygons, const Vec3& point) {

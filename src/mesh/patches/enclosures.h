@@ -33,4 +33,12 @@ bool isOnFrontSide(const PatchMesh& mesh, const ClosedSurface& surface, const Ve
 bool isEmbedded(const PatchMesh& mesh, std::span<const Index> first,
                 std::span<const Index> polygons, double coincidence);
 
+/// For every polygon the first one on the same corners.
+std::vector<Index> firstOnSameCorners(const PlanarPolygons& polygons, std::span<const Index> first);
+
+/// For every patch 1 if it is proved to see no sky, since it looks into a bounded space; also for
+/// one without an area. Throws Cancelled.
+std::vector<std::uint8_t> enclosedPatches(const PatchMesh& mesh, std::span<const Index> first,
+                                          double coincidence, Progress& progress);
+
 }  // namespace radiosity

@@ -93,7 +93,7 @@ void SceneChecks::reportLight(SceneInfo& info) const {
   const std::optional<Note> white = whiteMaterials(scene_);
   const auto isKnown = [&](const Note& note) { return note.text == white->text; };
   if (white && std::ranges::none_of(scene_.notes, isKnown)) info.problems.push_back(*white);
-  if (!absorbs && info.closed) {
+  if (!absorbs && info.watertight) {
     info.problems.push_back({Severity::loud,
                              "the scene is closed and every surface has reflectance 1: light is "
                              "never absorbed and there is no solution"});

@@ -53,7 +53,7 @@ SceneInfo inspectScene(const Scene& scene, double weld) {
   const WeldedFaces faces = weldFaces(scene, info.lower, info.upper, weld);
   measureSurfaces(scene, faces, info);
   const SceneChecks checks(scene, faces);
-  info.closed = checks.closed();
+  info.watertight = checks.closed();
   info.open_edges = checks.openEdges();
   checks.reportLight(info);
   checks.reportExtent(info);

@@ -11,7 +11,7 @@
 
 #include "base/processor_clock.h"
 #include "base/thread_order.h"
-#include "formfactor/closed_scene.h"
+#include "formfactor/closed_rows.h"
 #include "formfactor/exact/assembly/shared_tasks.h"
 #include "formfactor/exact/assembly/task_journal.h"
 #include "formfactor/exact/clip_kernels.h"
@@ -19,7 +19,6 @@
 #include "matrix/dealt_rows.h"
 #include "matrix/shared_rows.h"
 #include "mesh/clusters/canonical_order.h"
-#include "mesh/patches/enclosures.h"
 #include "radiosity/closure.h"
 
 namespace radiosity {
@@ -34,8 +33,8 @@ constexpr double kRecheckLeastTight = 1024;
 /// If emitters have more pairs than this, they are not a small part of the scene, and their pairs
 /// are evaluated as all others.
 constexpr std::size_t kMostEmitterPairs = 1'000'000;
-/// A row that leaves more than this to the sky needs no eye to tell that the scene is open.
-constexpr double kCertainSky = 0.01;
+/// A closed row may miss this share of its view, and the tolerance: more is no rounding.
+constexpr double kMostMissing = 0.01;
 
 std::size_t recheckEvery(double occluded_pairs, double tolerance) {
   const double least = tolerance < kSinglePrecision ? kRecheckLeastTight : kRecheckLeast;
@@ -176,34 +175,30 @@ void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_for
   for (std::size_t k = 0; k < order.ranked; ++k) result.error[order.patch[k]] = figure[k];
 }
 
-/// Sets fronts to the sums of the matrix's rows, and sky to the rest of an open scene's rows.
-void setAccounts(const PatchMesh& mesh, const PatchOrder& order, FormFactors& result,
-                 Progress& progress) {
+/// Sets fronts to the sums of the matrix's rows, and the sky of open rows to the rest. What a
+/// closed row misses, or any row has beyond 1, is its error.
+void setAccounts(const PatchMesh& mesh, const PatchOrder& order, double tolerance,
+                 ClosedRows& closed, FormFactors& result) {
   result.fronts = result.matrix.rowSums();
-  double most_sky = 0;
+  FormFactorReport& report = result.report;
   for (std::size_t k = 0; k < order.ranked; ++k) {
     const Index i = order.patch[k];
-    result.sky[i] = 1 - result.fronts[i] - result.backs[i];
-    most_sky = std::max(most_sky, result.sky[i]);
+    const double rest = 1 - result.fronts[i] - result.backs[i];
+    const bool is_closed = closed.keeps(i, rest, kMostMissing + tolerance);
+    result.sky[i] = is_closed ? 0.0 : std::max(0.0, rest);
+    report.largest_row_error = std::max(report.largest_row_error, std::abs(rest - result.sky[i]));
   }
-  FormFactorReport& report = result.report;
-  std::optional<Enclosures> found;
-  report.closed = order.ranked > 0 && most_sky < kCertainSky &&
-                  (enclosuresOf(mesh, found).proved_closed || closedByEye(mesh, progress));
-  for (double& sky : result.sky) {
-    const double excess = report.closed ? std::abs(sky) : -sky;
-    report.largest_row_error = std::max(report.largest_row_error, excess);
-    if (report.closed) sky = 0;
-  }
+  closed.report(mesh, report);
 }
 
-/// Reports how far a closed scene's rows are from 1 and, if asked to, puts the difference on the
-/// occluded pairs.
-void close(const PatchOrder& order, const UncertainEntries& uncertain, ClosureMode mode,
-           FormFactors& result, Progress& progress) {
-  std::vector<double> target(order.patch.size(), 0.0);
+/// Reports how far closed rows are from 1 and, if asked to, puts the difference on the occluded
+/// pairs.
+void close(const PatchOrder& order, const ClosedRows& closed, const UncertainEntries& uncertain,
+           ClosureMode mode, FormFactors& result, Progress& progress) {
+  std::vector<double> target = result.fronts;
   for (std::size_t k = 0; k < order.ranked; ++k) {
-    target[order.patch[k]] = std::max(0.0, 1 - result.backs[order.patch[k]]);
+    const Index i = order.patch[k];
+    if (closed.closed(i)) target[i] = std::max(0.0, 1 - result.backs[i]);
   }
   FormFactorReport& report = result.report;
   report.closure_enforced = mode == ClosureMode::enforce;
@@ -255,9 +250,10 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   reportCounts(scene, sums, report.exact);
   noteFallbacks(sums.occluded, report);
   setErrors(scene.order, sums.error, kernels.closed_form, result);
-  setAccounts(mesh, scene.order, result, progress);
-  if (report.closed && options.closure != ClosureMode::off) {
-    close(scene.order, rows.uncertain, options.closure, result, progress);
+  ClosedRows closed(mesh, false);
+  setAccounts(mesh, scene.order, options.toleranceOf(FormFactorMethod::exact), closed, result);
+  if (closed.any() && options.closure != ClosureMode::off) {
+    close(scene.order, closed, rows.uncertain, options.closure, result, progress);
   }
   progress.begin("finishing", 1);
   accountForBacks(mesh, canonicalOrder(mesh), mesh.area, rows.seen_backs, result);

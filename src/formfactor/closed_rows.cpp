@@ -1,0 +1,47 @@
+#include "formfactor/closed_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "mesh/patches/enclosures.h"
+#include "scene/text.h"
+
+namespace radiosity {
+
+ClosedRows::ClosedRows(const PatchMesh& mesh, bool of_unknowns)
+    : of_unknowns_(of_unknowns), state_(of_unknowns ? mesh.unknowns() : mesh.size(), kClosed) {
+  std::optional<Enclosures> found;
+  const Enclosures& enclosures = enclosuresOf(mesh, found);
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (enclosures.enclosed[i] == 0) state_[rowOf(mesh, i)] = kOpen;
+  }
+}
+
+bool ClosedRows::any() const { return std::ranges::count(state_, kClosed) > 0; }
+
+void ClosedRows::report(const PatchMesh& mesh, FormFactorReport& report) const {
+  report.closed = report.empty_rows < state_.size() &&
+                  std::ranges::count(state_, kClosed) == std::ssize(state_);
+  const auto refuted = std::ranges::count(state_, kRefuted);
+  if (refuted == 0) return;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (state_[rowOf(mesh, i)] == kRefuted) names.insert(mesh.surface_names[mesh.surface[i]]);
+  }
+  report.notes.push_back(
+      {Severity::warning,
+       fmt::format("{} rows see too little for patches that are closed in; what they miss counts "
+                   "as sky: {}; do faces lie on others, or cross them? (without --faces-as-patches "
+                   "they are cut)",
+                   refuted, joinNames(std::vector<std::string>(names.begin(), names.end())))});
+}
+
+std::size_t ClosedRows::rowOf(const PatchMesh& mesh, std::size_t patch) const {
+  return of_unknowns_ ? mesh.unknownOf(patch) : patch;
+}
+
+}  // namespace radiosity

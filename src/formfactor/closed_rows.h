@@ -1,0 +1,41 @@
+// Rows that see no sky, alike for every method.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+/// Rows whose patches are all enclosed (Enclosures::enclosed): they see fronts and backs alone. If
+/// a method nevertheless misses much of a row, the row is open.
+class ClosedRows {
+ public:
+  /// Rows of unknowns, or of patches.
+  ClosedRows(const PatchMesh& mesh, bool of_unknowns);
+
+  bool closed(std::size_t row) const { return state_[row] == kClosed; }
+  bool any() const;
+
+  /// Whether a row is closed of which the method misses the share `missing`, which should be `most`
+  /// at most: else it is open from now on. Thread-safe for different rows.
+  bool keeps(std::size_t row, double missing, double most) {
+    if (closed(row) && missing > most) state_[row] = kRefuted;
+    return closed(row);
+  }
+  /// Sets FormFactorReport::closed, and warns of rows that keeps() has opened.
+  void report(const PatchMesh& mesh, FormFactorReport& report) const;
+
+ private:
+  static constexpr std::uint8_t kOpen = 0;
+  static constexpr std::uint8_t kClosed = 1;
+  static constexpr std::uint8_t kRefuted = 2;
+  std::size_t rowOf(const PatchMesh& mesh, std::size_t patch) const;
+
+  bool of_unknowns_;
+  std::vector<std::uint8_t> state_;
+};
+
+}  // namespace radiosity

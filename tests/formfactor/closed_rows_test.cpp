@@ -1,0 +1,180 @@
+// Closed or open: proved by the mesh, alike for all methods; what is not proved keeps its sky.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "formfactor/computed_factors.h"
+#include "formfactor/exact_scenes.h"
+#include "support/scene_builder.h"
+
+namespace radiosity {
+namespace {
+
+using test::SceneBuilder;
+
+FormFactorOptions by(FormFactorMethod method, double tolerance) {
+  FormFactorOptions options;
+  options.method = method;
+  if (method == FormFactorMethod::hemicube) {
+    options.resolution = 64;
+  } else {
+    options.tolerance = tolerance;
+  }
+  return options;
+}
+
+constexpr FormFactorMethod kMethods[] = {FormFactorMethod::exact, FormFactorMethod::rays,
+                                         FormFactorMethod::hemicube};
+
+/// Unit squares that face each other at a distance (Howell C-11).
+double facingSquares(double distance) {
+  const double x = 1 / distance;
+  const double s = std::sqrt(1 + x * x);
+  return 2 / (std::numbers::pi * x * x) *
+         (std::log((1 + x * x) / std::sqrt(1 + 2 * x * x)) + 2 * x * s * std::atan(x / s) -
+          2 * x * std::atan(x));
+}
+
+/// The scene as it is, turned, small, large and far away.
+std::vector<Scene> placed(const Scene& scene) {
+  return {scene, test::turned(scene), test::turned(test::scaled(scene, 1e-3)),
+          test::scaled(scene, 1e3), test::moved(test::turned(scene), {1e4, -2e4, 3e4})};
+}
+
+// An eye with pixels does not see a gap of a thousandth between the plates' edges. The sky has it.
+TEST(ClosedRows, PlatesKeepTheSkyOfTheGapBetweenThem) {
+  EXPECT_NEAR(1 - facingSquares(3e-3), 5.956e-3, 1e-6);
+  for (const double gap : {.3, 3e-2, 3e-3, 3e-4}) {
+    SceneBuilder builder;
+    builder.level(builder.surface("low"), 0, 0, 1, 1, 0);
+    builder.level(builder.surface("high"), 0, 0, 1, 1, gap, false);
+    const double sky = 1 - facingSquares(gap);
+    for (const Scene& scene : placed(builder.scene())) {
+      const PatchMesh mesh = test::meshOf(scene, 1, true);
+      const FormFactors exact = test::computed(mesh, by(FormFactorMethod::exact, 1e-4));
+      EXPECT_FALSE(exact.report.closed);
+      for (const int i : {0, 1}) EXPECT_NEAR(exact.sky[i], sky, exact.error[i] + 1e-7) << gap;
+      const FormFactors rays = test::computed(mesh, by(FormFactorMethod::rays, 1e-2));
+      EXPECT_FALSE(rays.report.closed);
+      // Five standard errors of independent rays; these are more even.
+      const double each = 2 / double(rays.report.rays.rays);
+      for (const int i : {0, 1}) EXPECT_NEAR(rays.sky[i], sky, 5 * std::sqrt(sky * each)) << gap;
+      // A hemicube represents the plate by its middle, which sees another sky.
+      EXPECT_FALSE(test::computed(mesh, by(FormFactorMethod::hemicube, 0)).report.closed);
+    }
+  }
+}
+
+// All that enters a room by a slit falls on the room: by reciprocity all that leaves is the slit's
+// area, whatever the room looks like.
+TEST(ClosedRows, ARoomWithASlitLosesTheSlitsArea) {
+  for (const double slit : {1e-2, 1e-4}) {
+    SceneBuilder builder;
+    const Index walls = builder.surface("walls");
+    const std::vector<Vec3> c = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                 {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    for (const auto& [p, q, r, s] :
+         {std::array{0, 1, 2, 3}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}}) {
+      builder.face(walls, {c[p], c[q], c[r], c[s]});
+    }
+    builder.level(builder.surface("ceiling"), slit, 0, 1, 1, 1, false);
+    for (const Scene& scene : placed(builder.scene())) {
+      const PatchMesh mesh = test::meshOf(scene, 60);
+      for (const FormFactorMethod method : kMethods) {
+        const bool exact = method == FormFactorMethod::exact;
+        const FormFactors f = test::computed(mesh, by(method, exact ? 1e-5 : 1e-2));
+        EXPECT_FALSE(f.report.closed) << slit;
+        double whole = 0;
+        double sky = 0;
+        for (std::size_t i = 0; i < mesh.size(); ++i) {
+          whole += mesh.area[i] / 6;
+          sky += mesh.area[i] * f.sky[i];
+          EXPECT_GE(f.sky[i], 0);
+        }
+        // Nothing is between any two patches of the room: closed forms to 1e-5 of each value. Of
+        // the rays that leave the slit's view has its share; rows of some ten
+        // thousand rays see it to some standard errors. Hemicubes of 64 pixels do not find it.
+        if (method == FormFactorMethod::hemicube) continue;
+        const double each = 1 / double(f.report.rays.rays);
+        const double tolerance = exact ? 1e-5 : 10 * std::sqrt(slit / 6 * each) + each;
+        EXPECT_NEAR(sky / whole / 6, slit / 6, tolerance) << slit;
+      }
+    }
+  }
+}
+
+/// A room and a lamp that pokes through its wall: a body or a sheet.
+Scene roomWithPokingLamp(bool body) {
+  SceneBuilder builder;
+  builder.box(builder.surface("room"), {0, 0, 0}, {2, 1.5, 1}, false);
+  const Index lamp = builder.surface("lamp", 0, 1);
+  if (body) {
+    builder.box(lamp, {1.7, .6, .4}, {2.4, .8, .6});
+  } else {
+    builder.face(lamp, {{1.7, .6, .4}, {2.4, .6, .5}, {2.4, .8, .5}, {1.7, .8, .4}});
+  }
+  return builder.scene();
+}
+
+// The walls are closed in and the lamp is not: its outer part sees the sky.
+TEST(ClosedRows, ALampThroughTheWallIsOpenByEveryMethod) {
+  for (const bool body : {true, false}) {
+    for (const bool faces : {true, false}) {
+      for (const Scene& scene : placed(roomWithPokingLamp(body))) {
+        const PatchMesh mesh = test::meshOf(scene, 60, faces);
+        std::vector<double> lost;
+        double stated = 0;  // by rays
+        for (const FormFactorMethod method : kMethods) {
+          const bool exact = method == FormFactorMethod::exact;
+          const FormFactors f = test::computed(mesh, by(method, exact ? 1e-4 : 1e-2));
+          EXPECT_FALSE(f.report.closed) << body << faces;
+          double of_lamp = 0;
+          double whole = 0;
+          for (std::size_t i = 0; i < mesh.size(); ++i) {
+            if (mesh.surface[i] == 0) {
+              EXPECT_EQ(f.sky[i], 0) << "wall";
+              EXPECT_NEAR(f.fronts[i] + f.backs[i], 1, 3e-2) << "rows to 1e-2";
+            } else {
+              of_lamp += mesh.area[i] * f.sky[i];
+              whole += mesh.area[i];
+              if (method == FormFactorMethod::rays) stated += mesh.area[i] * f.error[i];
+            }
+            EXPECT_NEAR(f.fronts[i] + f.backs[i] + f.sky[i], 1, 3e-2);
+          }
+          lost.push_back(of_lamp / whole);
+          if (method == FormFactorMethod::rays) stated /= whole;
+        }
+        EXPECT_GT(lost[0], .2);
+        EXPECT_NEAR(lost[1], lost[0], stated) << body << faces;
+        // Faces as patches are looked at from their middles, inside or outside.
+        if (!faces) {
+          EXPECT_NEAR(lost[2], lost[0], .05) << "hemicubes";
+        }
+      }
+    }
+  }
+}
+
+// Rays that miss what the mesh proves are counted, and never take power with them.
+TEST(ClosedRows, APatchFaceToFaceWithTheFloorIsOpen) {
+  SceneBuilder builder;
+  builder.box(builder.surface("room"), {0, 0, 0}, {2, 1.5, 1}, false);
+  builder.box(builder.surface("block", .5, 1), {.3, .4, 0}, {.8, .9, .5});
+  for (const Scene& scene : placed(builder.scene())) {
+    const PatchMesh mesh = test::meshOf(scene, 1, true);
+    for (const FormFactorMethod method : kMethods) {
+      const FormFactors f = test::computed(mesh, by(method, 1e-2));
+      for (std::size_t i = 0; i < mesh.size(); ++i) {
+        EXPECT_NEAR(f.fronts[i] + f.backs[i] + f.sky[i], 1, 1e-2) << i;
+      }
+    }
+    // Meshed, the contact is gone and the room is closed.
+    EXPECT_TRUE(test::computed(test::meshOf(scene, 60)).report.closed);
+  }
+}
+
+}  // namespace
+}  // namespace radiosity
