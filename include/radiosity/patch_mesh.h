@@ -91,6 +91,9 @@ struct PatchMesh {
   std::vector<Index> twin;              ///< N, the patch on the other side, or kNone
   PlanarPolygons polygons;
   std::vector<std::string> surface_names;  ///< as Scene::surfaces, in order
+  /// Metres: what is nearer touches. Absent: 1e-7 of the diagonal. The mesh has less for a small
+  /// `weld`, and for small things.
+  std::optional<double> coincidence;
   /// Enclosures of `polygons`. meshScene() finds them. A mesh from elsewhere may lack them; each
   /// user then finds them anew. Code that changes vertices or polygons by hand must reset them.
   std::optional<Enclosures> enclosures;
@@ -114,8 +117,10 @@ struct MeshOptions {
   /// cells, cells of a polygon are joined; a polygon is at least one patch. If that is more than
   /// 1.2 times as many, patches share unknowns (PatchMesh::clusters); a surface has at least one.
   std::size_t patches = 2000;
-  double max_edge = 0;            ///< metres; longest patch edge; 0: derived from `patches`
-  double weld = 1e-7;             ///< coincidence, as a fraction of the scene's diagonal; 0 to 1e-2
+  double max_edge = 0;  ///< metres; longest patch edge; 0: derived from `patches`
+  /// Coincidence, as a fraction of the scene's diagonal, 0 to 1e-2; but never more than 1e-4 (or
+  /// this, if it is more) of a small thing: connected faces of a surface.
+  double weld = 1e-7;
   bool faces_as_patches = false;  ///< patch k is face k of the file; nothing welded, cut, reordered
   /// Throws InputError naming the option and its range.
   void validate() const;

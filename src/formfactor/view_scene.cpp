@@ -11,6 +11,7 @@
 
 #include "base/geometry/box.h"
 #include "base/parallel.h"
+#include "mesh/patches/enclosures.h"
 #include "mesh/triangulate.h"
 
 namespace radiosity {
@@ -64,7 +65,7 @@ ViewScene::ViewScene(const PatchMesh& mesh)
     : patches(mesh.size()),
       items(mesh.size() + mesh.surface_names.size()),
       scale(powerOfTwoBelow(boxOf(mesh.vertices).diagonal())),
-      coincidence(MeshOptions().weld * boxOf(mesh.vertices).diagonal() * scale) {
+      coincidence(coincidenceOf(mesh) * scale) {
   addPolygons(mesh);
   addSides(mesh);
   numberCells();

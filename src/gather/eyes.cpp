@@ -10,6 +10,7 @@
 #include "base/geometry/segment.h"
 #include "base/parallel.h"
 #include "formfactor/hemicube/eye_frame.h"
+#include "mesh/patches/enclosures.h"
 
 namespace radiosity {
 namespace {
@@ -130,10 +131,6 @@ class VertexSide {
   double room_ =
       std::numeric_limits<double>::infinity();  ///< to the nearest edge not at the vertex
 };
-
-double coincidenceOf(const PatchMesh& mesh) {
-  return MeshOptions().weld * boxOf(mesh.vertices).diagonal();
-}
 
 /// A different seed for each corner of a patch, so that the eyes of one patch have different turns.
 std::uint64_t cornerSeed(std::uint64_t seed, std::size_t corner) {

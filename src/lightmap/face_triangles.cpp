@@ -73,12 +73,12 @@ std::vector<FaceTriangle> turnedOver(std::span<const FaceTriangle> fronts) {
 }
 
 void findNeighbours(std::vector<FaceTriangle>& triangles, double weld) {
-  WeldedPoints points(weld);
+  WeldedPoints points;
   std::vector<Edge> edges;
   edges.reserve(3 * triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     std::array<Index, 3> at{};
-    for (std::size_t k = 0; k < 3; ++k) at[k] = points.insert(triangles[t].position[k]);
+    for (std::size_t k = 0; k < 3; ++k) at[k] = points.insert(triangles[t].position[k], weld);
     for (std::size_t k = 0; k < 3; ++k) {
       const Index from = at[k];
       const Index to = at[(k + 1) % 3];

@@ -233,6 +233,54 @@ TEST(AnyGeometry, NoiseAsLargeAsTheCoincidenceIsMeshed) {
   }
 }
 
+TEST(AnyGeometry, ASmallThingBesideALargeOneKeepsItsFaces) {
+  // A craft of a metre, 400 km over a ball of 6.4e6 m: the coincidence of the ball is 2 m.
+  SceneBuilder b;
+  addSphere(b, b.surface("ball"), {0, 0, 0}, 6.4e6, 12);
+  const double up = 6.8e6;
+  b.level(b.surface("plate"), 0, 0, 1, 1, up, false);
+  b.box(b.surface("body"), {0, 0, up + 1}, {0.5, 0.2, up + 1.5});
+  everywhere(b.scene(), [](const MeshResult& r) {
+    // Coordinates of 7e6 m are rounded by 1e-9 m.
+    EXPECT_NEAR(r.report.surfaces[1].kept, 1, 1e-6);
+    EXPECT_NEAR(r.report.surfaces[2].kept, 0.9, 1e-6);
+    ASSERT_TRUE(r.mesh.coincidence);
+    EXPECT_LE(*r.mesh.coincidence, 1e-4);
+  });
+}
+
+TEST(AnyGeometry, ASurfaceThatWouldVanishIsRefused) {
+  SceneBuilder b;
+  b.level(b.surface("floor"), 0, 0, 4, 3, 0);
+  b.level(b.surface("thread"), 1, 1, 3, 1 + 1e-8, 1);
+  try {
+    meshed(b.scene());
+    FAIL() << "meshed";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("thread"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("--weld"), std::string::npos) << error.what();
+  }
+  EXPECT_NEAR(meshed(b.scene(), 300, 1e-12).report.surfaces[1].kept, 2e-8, 1e-14);
+}
+
+TEST(AnyGeometry, AGapThatWeldingClosesIsNoted) {
+  for (const double gap : {1e-9, 1e-8, 1e-7}) {
+    SceneBuilder facing;
+    facing.level(facing.surface("low"), 0, 0, 1, 1, 0);
+    facing.level(facing.surface("high"), 0, 0, 1, 1, gap, false);
+    // The same place turned away is a sheet of two sides.
+    SceneBuilder away;
+    away.level(away.surface("low"), 0, 0, 1, 1, 0, false);
+    away.level(away.surface("high"), 0, 0, 1, 1, gap);
+    for (const bool turn : {false, true}) {
+      const auto placed = [&](SceneBuilder& b) { return turn ? turned(b.scene()) : b.scene(); };
+      EXPECT_TRUE(saysWhy(meshed(placed(facing)).report, "low/low and high/high face each other"));
+      EXPECT_FALSE(saysWhy(meshed(placed(away)).report, "face each other"));
+      EXPECT_FALSE(saysWhy(meshed(placed(facing), 300, 1e-12).report, "face each other"));
+    }
+  }
+}
+
 TEST(AnyGeometry, NoiseUnderACoarseWeldIsMeshed) {
   for (unsigned seed = 11; seed <= 14; ++seed) {
     SCOPED_TRACE(seed);

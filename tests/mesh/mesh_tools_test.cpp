@@ -73,13 +73,13 @@ TEST(SharpCorners, MatchASearchOfAllPairsOfEdges) {
 
 TEST(EdgeRows, HoldEveryEdgeNearAPlace) {
   Random random(5);
-  WeldedPoints points(1e-9);
+  WeldedPoints points;
   std::vector<std::array<Index, 2>> edges;
   for (int k = 0; k < 400; ++k) {
     const Vec3 p = random.point();
     // Short ones, and one in twenty across everything.
     const Vec3 q = k % 20 == 0 ? random.point() : p + 0.01 * (random.point() - 0.5);
-    edges.push_back({points.insert(p), points.insert(q)});
+    edges.push_back({points.insert(p, 1e-9), points.insert(q, 1e-9)});
   }
   const PlaneImage image(Vec3(0, 0, 1));
   const double margin = 1e-3;
@@ -325,8 +325,9 @@ TEST(WeldPoints, AGroupIsOneOrSeveralWhateverItsOrder) {
   const auto count = [&](const std::vector<double>& at) {
     std::vector<Vec3> places;
     for (const double x : at) places.emplace_back(x * step, 1, 2);
-    WeldedPoints points(1e-3);
-    const std::vector<Index> point = weldPoints(places, 1e-3, points);
+    WeldedPoints points;
+    const std::vector<Index> point =
+        weldPoints(places, std::vector<double>(places.size(), 1e-3), points);
     EXPECT_EQ(point.size(), places.size());
     for (std::size_t k = 0; k < places.size(); ++k) {
       EXPECT_LT(glm::distance(points[point[k]], places[k]), 1e-3);

@@ -42,6 +42,7 @@ struct Contact {
   Vec3 from{0.0};
   Vec3 to{0.0};
   Index plane = kNone;
+  double coincidence = 0;  ///< of the two sheets, m
 };
 
 class ContactFinder {
@@ -57,9 +58,13 @@ class ContactFinder {
 
  private:
   std::span<const Index> edgesBeside(Index sheet, const Box3& box, std::vector<Index>& some) const;
-  Sides sidesOf(Index sheet, const Plane& plane) const;
+  /// Sheets coincide as far as the smaller of them allows.
+  double coincidenceOf(Index f, Index g) const {
+    return std::min(sheets_[f].coincidence, sheets_[g].coincidence);
+  }
+  Sides sidesOf(Index sheet, const Plane& plane, double eps) const;
   void addTraces(Index sheet, Index other, std::vector<Vec3>& points) const;
-  Containment place(const Vec3& p, Index sheet) const;
+  Containment place(const Vec3& p, Index sheet, double eps) const;
   std::span<const Index> edgesAt(Index sheet, const Vec2& q) const;
   InputFaces& input_;
   const std::vector<Plane>& planes_;
@@ -81,8 +86,10 @@ ContactFinder::ContactFinder(InputFaces& input, const std::vector<Plane>& planes
 }
 
 bool ContactFinder::mayMeet(Index f, Index g) const {
-  return sheets_[f].plane != sheets_[g].plane && sidesOf(f, planes_[sheets_[g].plane]).meets() &&
-         sidesOf(g, planes_[sheets_[f].plane]).meets();
+  const double eps = coincidenceOf(f, g);
+  return sheets_[f].plane != sheets_[g].plane &&
+         sidesOf(f, planes_[sheets_[g].plane], eps).meets() &&
+         sidesOf(g, planes_[sheets_[f].plane], eps).meets();
 }
 
 /// The edges of a sheet that may meet a box; `some` is storage for them.
@@ -106,8 +113,7 @@ std::span<const Index> ContactFinder::edgesAt(Index sheet, const Vec2& q) const 
 /// For a sheet with many edges, the four corners of its box in the sheet's plane are enough, unless
 /// the sheet is nearly parallel to the other plane: the box extends a few times as far as the
 /// sheet.
-Sides ContactFinder::sidesOf(Index number, const Plane& plane) const {
-  const double eps = input_.coincidence;
+Sides ContactFinder::sidesOf(Index number, const Plane& plane, double eps) const {
   const Sheet& sheet = sheets_[number];
   Sides out;
   if (rows_.count(number) > 0) {
@@ -131,7 +137,7 @@ Sides ContactFinder::sidesOf(Index number, const Plane& plane) const {
 /// Adds the points where the border of a sheet meets the plane of another one near that sheet:
 /// vertices within coincidence of the plane, and crossings of edges.
 void ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& points) const {
-  const double eps = input_.coincidence;
+  const double eps = coincidenceOf(number, other);
   const Sheet& sheet = sheets_[number];
   const Plane& plane = planes_[sheets_[other].plane];
   const Box3 beside = sheets_[other].box.grown(2.0 * eps);
@@ -152,16 +158,16 @@ void ContactFinder::addTraces(Index number, Index other, std::vector<Vec3>& poin
 
 /// The place of a point relative to a sheet: even-odd in the plane's image. Points closer than
 /// coincidence to an edge are on the border.
-Containment ContactFinder::place(const Vec3& p, Index number) const {
+Containment ContactFinder::place(const Vec3& p, Index number, double eps) const {
   const Sheet& sheet = sheets_[number];
-  if (!sheet.box.grown(input_.coincidence).contains(p)) return Containment::outside;
+  if (!sheet.box.grown(eps).contains(p)) return Containment::outside;
   const PlaneImage frame(planes_[sheet.plane].normal);
   const Vec2 q = frame(p);
   bool inside = false;
   for (const Index k : edgesAt(number, q)) {
     const Vec3& a3 = input_.points[sheet.edges[k][0]];
     const Vec3& b3 = input_.points[sheet.edges[k][1]];
-    if (distanceToSegment(p, a3, b3) <= input_.coincidence) return Containment::on;
+    if (distanceToSegment(p, a3, b3) <= eps) return Containment::on;
     const Vec2 a = frame(a3);
     const Vec2 b = frame(b3);
     if ((a.y > q.y) != (b.y > q.y) && q.x < a.x + (b.x - a.x) * ((q.y - a.y) / (b.y - a.y))) {
@@ -172,8 +178,8 @@ Containment ContactFinder::place(const Vec3& p, Index number) const {
 }
 
 void ContactFinder::add(const Contact& contact) {
-  const Index a = input_.points.insert(contact.from);
-  const Index b = input_.points.insert(contact.to);
+  const Index a = input_.points.insert(contact.from, contact.coincidence);
+  const Index b = input_.points.insert(contact.to, contact.coincidence);
   if (a != b) edges_.addContact(a, b, contact.plane);
 }
 
@@ -192,17 +198,22 @@ void ContactFinder::pair(Index f, Index g, std::vector<Contact>& out) const {
   const Vec3 start = *std::max_element(points.begin(), points.end(), farther(points.front()));
   const Vec3 end = *std::max_element(points.begin(), points.end(), farther(start));
   const Vec3 along = end - start;
+  const double eps = coincidenceOf(f, g);
   std::sort(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) {
     return glm::dot(a - start, along) < glm::dot(b - start, along);
   });
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     if (points[k] == points[k + 1]) continue;
     const Vec3 middle = 0.5 * (points[k] + points[k + 1]);
-    const Containment in_f = place(middle, f);
-    const Containment in_g = in_f == Containment::outside ? Containment::outside : place(middle, g);
+    const Containment in_f = place(middle, f, eps);
+    const Containment in_g =
+        in_f == Containment::outside ? Containment::outside : place(middle, g, eps);
     if (in_g == Containment::outside) continue;
-    if (in_f == Containment::inside) out.push_back({points[k], points[k + 1], sheets_[f].plane});
-    if (in_g == Containment::inside) out.push_back({points[k], points[k + 1], sheets_[g].plane});
+    const auto contact = [&](Index in) {
+      out.push_back({points[k], points[k + 1], sheets_[in].plane, eps});
+    };
+    if (in_f == Containment::inside) contact(f);
+    if (in_g == Containment::inside) contact(g);
   }
 }
 
@@ -212,7 +223,7 @@ void addContacts(InputFaces& input, const std::vector<Plane>& planes,
                  const std::vector<Sheet>& sheets, EdgeTable& edges, Progress& progress) {
   std::vector<Box3> boxes;
   boxes.reserve(sheets.size());
-  for (const Sheet& sheet : sheets) boxes.push_back(sheet.box.grown(input.coincidence));
+  for (const Sheet& sheet : sheets) boxes.push_back(sheet.box.grown(sheet.coincidence));
   ContactFinder finder(input, planes, sheets, edges);
   const auto pairs =
       overlappingPairs(boxes, &progress, [&](Index f, Index g) { return finder.mayMeet(f, g); });

@@ -1,6 +1,7 @@
 #include "mesh/arrangement/cut_planes.h"
 
 #include <algorithm>
+#include <array>
 #include <glm/geometric.hpp>
 
 #include "base/parallel.h"
@@ -54,7 +55,7 @@ std::vector<Index> PlaneCuts::run() {
   Repairs wanted;
   std::size_t before = 0;
   for (int round = 0; round < kRoundsOfRepair; ++round) {
-    splitEdges(input_.points, input_.coincidence, edges_, wanted, progress_);
+    splitEdges(input_.points, edges_, wanted, progress_);
     markStale();
     cutStale();
     wanted = repairs();
@@ -119,7 +120,10 @@ Repairs PlaneCuts::repairs() {
     out.splits.insert(out.splits.end(), more.splits.begin(), more.splits.end());
     out.merges.insert(out.merges.end(), more.merges.begin(), more.merges.end());
     for (const ImageCrossing& crossing : cut.crossings) {
-      const Index vertex = input_.points.insert(crossing.at);
+      const Edge& f = edges_[crossing.first];
+      const Edge& g = edges_[crossing.second];
+      const std::array<Index, 4> ends{f.a, f.b, g.a, g.b};
+      const Index vertex = input_.points.insert(crossing.at, coincidenceOf(input_.points, ends));
       for (const Index e : {crossing.first, crossing.second}) {
         if (vertex != edges_[e].a && vertex != edges_[e].b) out.splits.push_back({e, vertex});
       }
@@ -136,7 +140,8 @@ Repairs PlaneCuts::collapse(const Repairs& repairs) const {
     const Edge& edge = edges_[s.edge];
     const double to_a = glm::distance(points[s.vertex], points[edge.a]);
     const double to_b = glm::distance(points[s.vertex], points[edge.b]);
-    if (std::min(to_a, to_b) < 2.0 * input_.coincidence) {
+    const std::array<Index, 3> all{s.vertex, edge.a, edge.b};
+    if (std::min(to_a, to_b) < 2.0 * coincidenceOf(points, all)) {
       out.merges.push_back({s.vertex, to_a <= to_b ? edge.a : edge.b});
     } else {
       out.splits.push_back(s);

@@ -40,8 +40,7 @@ std::optional<Approach> interiorApproach(const Vec3& p1, const Vec3& q1, const V
 
 class Splitter {
  public:
-  Splitter(WeldedPoints& points, double coincidence, EdgeTable& edges)
-      : points_(points), coincidence_(coincidence), edges_(edges) {}
+  Splitter(WeldedPoints& points, EdgeTable& edges) : points_(points), edges_(edges) {}
 
   /// Tests all pairs with an edge of `changed`; returns the edges that splitting made.
   std::vector<Index> pass(const std::vector<Index>& changed, Progress& progress);
@@ -49,6 +48,9 @@ class Splitter {
   std::vector<Index> apply(const Repairs& repairs);
 
  private:
+  double coincidenceOf(const Edge& edge) const {
+    return std::min(points_.radius(edge.a), points_.radius(edge.b));
+  }
   std::vector<Index> edgesBeside(const std::vector<Index>& changed) const;
   bool isInside(Index vertex, const Edge& edge) const;
   std::optional<Approach> passOf(const Edge& f, const Edge& g) const;
@@ -56,7 +58,6 @@ class Splitter {
   void pair(Index first, Index second);
 
   WeldedPoints& points_;
-  double coincidence_;
   EdgeTable& edges_;
   std::vector<Box3> boxes_;  ///< by edge
   std::vector<ForcedSplit> splits_;
@@ -72,14 +73,16 @@ bool Splitter::isInside(Index vertex, const Edge& edge) const {
   const Vec3 to_b = points_[edge.b] - p;
   if (glm::dot(to_a, to_b) >= 0) return false;
   const double length = glm::distance(points_[edge.a], points_[edge.b]);
-  return glm::length(glm::cross(to_a, to_b)) < coincidence_ * length;
+  const double reach = std::min(points_.radius(vertex), coincidenceOf(edge));
+  return glm::length(glm::cross(to_a, to_b)) < reach * length;
 }
 
 /// The points where two edges without a common vertex pass each other closer than coincidence.
 std::optional<Approach> Splitter::passOf(const Edge& f, const Edge& g) const {
   if (f.a == g.a || f.a == g.b || f.b == g.a || f.b == g.b) return std::nullopt;
   const auto approach = interiorApproach(points_[f.a], points_[f.b], points_[g.a], points_[g.b]);
-  if (!approach || glm::distance(approach->on_first, approach->on_second) >= coincidence_) {
+  const double reach = std::min(coincidenceOf(f), coincidenceOf(g));
+  if (!approach || glm::distance(approach->on_first, approach->on_second) >= reach) {
     return std::nullopt;
   }
   return approach;
@@ -109,7 +112,8 @@ void Splitter::pair(Index first, Index second) {
   if (touch) return;
   const auto approach = passOf(f, g);
   if (!approach) return;
-  const Index vertex = points_.insert(0.5 * (approach->on_first + approach->on_second));
+  const Index vertex = points_.insert(0.5 * (approach->on_first + approach->on_second),
+                                      std::min(coincidenceOf(f), coincidenceOf(g)));
   const auto cross = [&](Index edge, const Edge& ends) {
     const bool shortens =
         glm::dot(points_[ends.a] - points_[vertex], points_[ends.b] - points_[vertex]) < 0;
@@ -170,7 +174,7 @@ std::vector<Index> Splitter::pass(const std::vector<Index>& changed, Progress& p
     Box3 box;
     box.add(points_[edges_[e].a]);
     box.add(points_[edges_[e].b]);
-    boxes_[e] = box.grown(0.5 * coincidence_);
+    boxes_[e] = box.grown(0.5 * coincidenceOf(edges_[e]));
   });
   const std::vector<Index> edge_of = edgesBeside(changed);
   std::vector<Box3> boxes;
@@ -214,9 +218,9 @@ std::vector<Index> Splitter::edgesBeside(const std::vector<Index>& changed) cons
 
 }  // namespace
 
-void splitEdges(WeldedPoints& points, double coincidence, EdgeTable& edges, const Repairs& repairs,
+void splitEdges(WeldedPoints& points, EdgeTable& edges, const Repairs& repairs,
                 Progress& progress) {
-  Splitter splitter(points, coincidence, edges);
+  Splitter splitter(points, edges);
   std::vector<Index> changed;
   if (repairs.empty()) {
     for (std::size_t e = 0; e < edges.size(); ++e) changed.push_back(Index(e));

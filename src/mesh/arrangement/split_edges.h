@@ -25,7 +25,6 @@ struct Repairs {
 /// Splits edges until no end of an edge lies inside another closer than coincidence, and no two
 /// edges pass each other closer than that. Makes a point where two edges cross. `repairs` are
 /// applied first, at any distance; without repairs, all edges are tested.
-void splitEdges(WeldedPoints& points, double coincidence, EdgeTable& edges, const Repairs& repairs,
-                Progress& progress);
+void splitEdges(WeldedPoints& points, EdgeTable& edges, const Repairs& repairs, Progress& progress);
 
 }  // namespace radiosity

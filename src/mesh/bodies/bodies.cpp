@@ -47,7 +47,7 @@ Relations relations(const Arrangement& arrangement, const Components& components
 
 /// Whether a closed surface is convex: its volume is that of its convex hull, but for a shell one
 /// coincidence thick. O(n log n).
-bool isConvex(const Component& component, double coincidence) {
+bool isConvex(const Component& component) {
   std::vector<Kernel::Point_3> points;
   const Vec3& base = component.triangles.front()[0];
   double volume = 0;
@@ -69,7 +69,7 @@ bool isConvex(const Component& component, double coincidence) {
     hull_volume += glm::dot(t[0], glm::cross(t[1], t[2])) / 6.0;
     hull_area += 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
   }
-  return std::abs(hull_volume - volume) <= coincidence * hull_area;
+  return std::abs(hull_volume - volume) <= component.coincidence * hull_area;
 }
 
 double diagonal(const Component& c) { return glm::distance(c.box.low, c.box.high); }
@@ -78,8 +78,8 @@ double diagonal(const Component& c) { return glm::distance(c.box.low, c.box.high
 class TwoSided {
  public:
   TwoSided(const std::vector<Component>& list, const Relations& relation,
-           const std::vector<std::size_t>& cell_count, double coincidence)
-      : list_(list), relation_(relation), cell_count_(cell_count), coincidence_(coincidence) {}
+           const std::vector<std::size_t>& cell_count)
+      : list_(list), relation_(relation), cell_count_(cell_count) {}
 
   Body bodyOf(Index c) const {
     bool holds_whole = false;
@@ -101,20 +101,19 @@ class TwoSided {
     }
     outside = outside || not_outside < list_.size();
     if (outside) return holds_whole || smaller_sticks_out ? Body::none : Body::solid;
-    return holds_whole || isConvex(list_[c], coincidence_) ? Body::room : Body::none;
+    return holds_whole || isConvex(list_[c]) ? Body::room : Body::none;
   }
 
  private:
   const std::vector<Component>& list_;
   const Relations& relation_;
   const std::vector<std::size_t>& cell_count_;
-  double coincidence_;
 };
 
 }  // namespace
 
 Bodies::Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
-               const Components& components, const Winding& winding, double coincidence)
+               const Components& components, const Winding& winding)
     : winding_(winding) {
   const std::vector<Component>& list = components.list;
   body_.assign(list.size(), Body::none);
@@ -122,7 +121,7 @@ Bodies::Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
   linings_.resize(list.size());
   std::vector<std::size_t> cell_count(list.size(), 0);
   const Relations relation = relations(arrangement, components, winding, cell_count);
-  const TwoSided two_sided(list, relation, cell_count, coincidence);
+  const TwoSided two_sided(list, relation, cell_count);
   for (Index c = 0; c < list.size(); ++c) {
     if (!list[c].closed) continue;
     if (list[c].two_sided) {

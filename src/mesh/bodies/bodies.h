@@ -24,7 +24,7 @@ enum class Body {
 class Bodies {
  public:
   Bodies(const Arrangement& arrangement, const std::vector<Sheet>& sheets,
-         const Components& components, const Winding& winding, double coincidence);
+         const Components& components, const Winding& winding);
 
   /// Ascending.
   const std::vector<Index>& rooms() const { return rooms_; }

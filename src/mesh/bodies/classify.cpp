@@ -243,8 +243,8 @@ std::vector<VisibleCell> classify(const Scene& scene, const InputFaces& input,
                                   const Arrangement& arrangement, const std::vector<Sheet>& sheets,
                                   const Components& components, MeshReport& report,
                                   Progress& progress) {
-  const Winding winding(arrangement, planes, sheets, components, input.coincidence, progress);
-  const Bodies bodies(arrangement, sheets, components, winding, input.coincidence);
+  const Winding winding(arrangement, planes, sheets, components, progress);
+  const Bodies bodies(arrangement, sheets, components, winding);
   const Hollows hollows(scene, input, planes, edges, arrangement, sheets);
   Classifier classifier(scene, arrangement, sheets, components, winding, bodies, hollows, report);
   std::vector<VisibleCell> out;

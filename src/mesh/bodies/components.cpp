@@ -216,7 +216,7 @@ void Joiner::close(Component& component, Components& all) const {
     volume += glm::dot(t[0] - centre, glm::cross(t[1] - centre, t[2] - centre)) / 6.0;
     area += 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
   }
-  component.closed = std::abs(volume) > 0.5 * area * input_.coincidence;
+  component.closed = std::abs(volume) > 0.5 * area * component.coincidence;
   component.inward = component.closed && volume < 0;
   if (!component.inward) return;
   for (auto& t : component.triangles) std::swap(t[1], t[2]);
@@ -246,6 +246,7 @@ Components Joiner::collect() {
     component.two_sided = component.two_sided && isTwoSided(Index(s));
     component.box.add(sheets_[s].box.low);
     component.box.add(sheets_[s].box.high);
+    component.coincidence = std::min(component.coincidence, sheets_[s].coincidence);
     addTriangles(Index(s), component, sign);
   }
   for (std::size_t s = 0; s < sheets_.size(); ++s) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "mesh/faces/sheets.h"
@@ -14,6 +15,7 @@ struct Component {
   std::vector<std::array<Vec3, 3>> triangles;  ///< of its faces, outward where `closed`
   std::vector<Index> triangle_plane;
   Box3 box;
+  double coincidence = std::numeric_limits<double>::infinity();  ///< the least of its sheets', m
   bool closed = false;     ///< every edge is matched and it has a volume, so it bounds a body
   bool two_sided = false;  ///< all sheets are two-sided
   bool inward = false;     ///< closed, and the file has its faces turned inward

@@ -4,6 +4,7 @@
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -75,6 +76,7 @@ struct Space {
   double seen = 0;    ///< m^2 of sides with patches
   double backs = 0;   ///< m^2 of sides without
   bool emits = false;
+  double coincidence = std::numeric_limits<double>::infinity();  ///< the least of its sides', m
 };
 
 class SpaceSearch {
@@ -147,9 +149,10 @@ class SpaceSearch {
         for (const Index cell : {s.left, s.right}) {
           if (cell == kNone) continue;
           for (const Side side : {kAbove, kBelow}) {
-            Box3& box = spaces_[sets_.find(2 * cell + Index(side))].box;
-            box.add(input_.points[edges_[Index(e)].a]);
-            box.add(input_.points[edges_[Index(e)].b]);
+            Space& space = spaces_[sets_.find(2 * cell + Index(side))];
+            space.box.add(input_.points[edges_[Index(e)].a]);
+            space.box.add(input_.points[edges_[Index(e)].b]);
+            space.coincidence = std::min(space.coincidence, planes_[s.plane].coincidence);
           }
         }
       }
@@ -160,7 +163,7 @@ class SpaceSearch {
     const Space& space = spaces_[root];
     const double area = space.seen + space.backs;
     return sets_.find(root) == root && space.seen > 0 && space.backs > space.seen && !space.emits &&
-           space.volume > 1.5 * area * input_.coincidence;
+           space.volume > 1.5 * area * space.coincidence;
   }
 
   /// Boxes of the spaces that emit.
@@ -199,7 +202,7 @@ class SpaceSearch {
       out[k] = 1;
       candidates.push_back(Index(boxes.size()));
       root_of.push_back(k);
-      boxes.push_back(spaces_[k].box.grown(input_.coincidence));
+      boxes.push_back(spaces_[k].box.grown(spaces_[k].coincidence));
     }
     for (const auto& [light, box] : overlappingPairs(boxes, candidates)) {
       if (light >= count || box < count) continue;

@@ -77,20 +77,18 @@ WindingTree treeOf(const Component& component) {
 class Surroundings {
  public:
   Surroundings(const std::vector<PlaneCell>& cells, const std::vector<Plane>& planes,
-               const std::vector<Sheet>& sheets, const Components& components, double coincidence,
-               Progress& progress)
+               const std::vector<Sheet>& sheets, const Components& components, Progress& progress)
       : cells_(cells),
         planes_(planes),
         sheets_(sheets),
         components_(components),
-        coincidence_(coincidence),
         progress_(progress) {
     for (Index c = 0; c < components.list.size(); ++c) {
       const Component& component = components.list[c];
       if (!component.closed) continue;
       closed_.push_back(c);
       trees_.push_back(treeOf(component));
-      boxes_.push_back(component.box.grown(coincidence));
+      boxes_.push_back(component.box.grown(component.coincidence));
     }
   }
 
@@ -132,7 +130,7 @@ class Surroundings {
 
   /// A point off the cell, past surfaces that coincide with it but have planes of their own.
   Vec3 inFrontOf(const PlaneCell& cell, Side side) const {
-    const double height = 2.0 * coincidence_;
+    const double height = 2.0 * planes_[cell.plane].coincidence;
     return cell.sample + planes_[cell.plane].normal * (side == kAbove ? height : -height);
   }
 
@@ -140,7 +138,6 @@ class Surroundings {
   const std::vector<Plane>& planes_;
   const std::vector<Sheet>& sheets_;
   const Components& components_;
-  double coincidence_;
   Progress& progress_;
   std::vector<Index> closed_;
   std::vector<WindingTree> trees_;  // of each closed component
@@ -188,10 +185,10 @@ bool agree(std::span<const std::vector<Winding::Entry>> lists) {
 }  // namespace
 
 Winding::Winding(const Arrangement& arrangement, const std::vector<Plane>& planes,
-                 const std::vector<Sheet>& sheets, const Components& components, double coincidence,
+                 const std::vector<Sheet>& sheets, const Components& components,
                  Progress& progress) {
   const auto& cells = arrangement.cells;
-  const Surroundings around(cells, planes, sheets, components, coincidence, progress);
+  const Surroundings around(cells, planes, sheets, components, progress);
   const std::vector<std::vector<Index>> members = membersOf(cells, joinSpaces(arrangement));
   std::vector<Index> eyes;
   for (const std::vector<Index>& sides : members) {

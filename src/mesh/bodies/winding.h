@@ -16,8 +16,7 @@ enum Side : int { kAbove = 0, kBelow = 1 };
 class Winding {
  public:
   Winding(const Arrangement& arrangement, const std::vector<Plane>& planes,
-          const std::vector<Sheet>& sheets, const Components& components, double coincidence,
-          Progress& progress);
+          const std::vector<Sheet>& sheets, const Components& components, Progress& progress);
 
   /// Winding number of closed component `component` in the space next to a side of a cell: 1
   /// inside, 0 outside (other numbers where the component overlaps itself).

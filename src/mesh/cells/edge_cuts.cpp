@@ -44,19 +44,36 @@ EdgeCuts::EdgeCuts(const CoarseComplex& complex) : complex_(complex) {
       }
     }
     for (const auto& [from, to] : polygon.inner_edges) add(from, to);
+    coincidence_.resize(ends_.size(), complex.coincidence);
+    lowerCoincidence(p);
   }
   whole_.assign(ends_.size(), 0);
   classes_ = EdgeClasses(length_);
   parallelFor(polygons, 64, [&](std::size_t p) {
     const CoarsePolygon& polygon = complex.polygons[p];
     if (polygon.loops.size() != 1 || !polygon.inner_edges.empty()) return;
-    four_sides_[p] = findFourSides(complex, polygon.loops[0], loops_[p][0]);
+    four_sides_[p] = findFourSides(complex, polygon, loops_[p][0]);
   });
   for (const auto& four : four_sides_) {
     if (four) joinOpposite(*four);
   }
   classes_.orient();
+  class_coincidence_ = coincidence_;
+  for (Index e = 0; e < ends_.size(); ++e) {
+    double& least = class_coincidence_[classes_.of(e)];
+    least = std::min(least, coincidence_[e]);
+  }
   limitAtSharpCorners();
+}
+
+/// An edge of several polygons has the least coincidence of theirs.
+void EdgeCuts::lowerCoincidence(std::size_t polygon) {
+  const CoarsePolygon& coarse = complex_.polygons[polygon];
+  const auto lower = [&](DirectedEdge e) {
+    coincidence_[e.edge] = std::min(coincidence_[e.edge], complex_.coincidenceOf(coarse));
+  };
+  for (const auto& loop : loops_[polygon]) std::ranges::for_each(loop, lower);
+  for (const auto& [from, to] : coarse.inner_edges) lower(find(from, to));
 }
 
 DirectedEdge EdgeCuts::add(Index from, Index to) {
@@ -96,7 +113,7 @@ void EdgeCuts::limitAtSharpCorners() {
     if (sines[e] >= 1) continue;
     const Index cls = classes_.of(e);
     const double scale = classes_.longest(cls) / length_[e];
-    least_start_[cls] = std::max(least_start_[cls], 2 * complex_.coincidence / sines[e] * scale);
+    least_start_[cls] = std::max(least_start_[cls], 2 * coincidence_[e] / sines[e] * scale);
   }
 }
 
@@ -163,7 +180,7 @@ std::vector<double> EdgeCuts::stopsFor(Index cls, double size, double spacing) c
   const double corner = least_start_[cls] / length;
   for (const Opposite& opposite : opposites_[cls]) {
     if (opposite.gap > kNarrow * size) break;
-    const double room = std::max(spacing * opposite.gap, 4 * complex_.coincidence) / length;
+    const double room = std::max(spacing * opposite.gap, 4 * class_coincidence_[cls]) / length;
     const double margin = std::max(room, corner);
     if (opposite.place < margin || opposite.place > 1 - margin) continue;
     const auto next = std::lower_bound(stops.begin(), stops.end(), opposite.place);

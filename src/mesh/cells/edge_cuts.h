@@ -81,6 +81,7 @@ class EdgeCuts {
   DirectedEdge add(Index from, Index to);
   void joinOpposite(const FourSides& sides);
   void limitAtSharpCorners();
+  void lowerCoincidence(std::size_t polygon);
   void noteGaps(DirectedEdge edge, const std::vector<Gap>& gaps);
   std::vector<double> stopsFor(Index cls, double size, double spacing) const;
   void countPieces(Rounding rounding);
@@ -92,6 +93,8 @@ class EdgeCuts {
   std::unordered_map<std::uint64_t, Index> index_;
   std::vector<std::array<Index, 2>> ends_;  ///< lower vertex first
   std::vector<double> length_;
+  std::vector<double> coincidence_;        ///< by edge
+  std::vector<double> class_coincidence_;  ///< by class, the least of its edges'
   std::vector<std::vector<std::vector<DirectedEdge>>> loops_;  ///< polygon, loop
   std::vector<std::optional<FourSides>> four_sides_;
   EdgeClasses classes_{{}};

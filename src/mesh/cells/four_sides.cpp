@@ -20,14 +20,15 @@ double distanceToLine(const Vec3& p, const Vec3& a, const Vec3& b) {
 }
 
 /// The places in the loop where it turns.
-std::vector<std::size_t> turnsOf(const CoarseComplex& complex, std::span<const Index> loop) {
+std::vector<std::size_t> turnsOf(const CoarseComplex& complex, std::span<const Index> loop,
+                                 double coincidence) {
   std::vector<std::size_t> corners;
   const std::size_t n = loop.size();
   for (std::size_t k = 0; k < n; ++k) {
     const Vec3& before = complex.vertices[loop[(k + n - 1) % n]];
     const Vec3& after = complex.vertices[loop[(k + 1) % n]];
     const Vec3& here = complex.vertices[loop[k]];
-    if (distanceToLine(here, before, after) > complex.coincidence ||
+    if (distanceToLine(here, before, after) > coincidence ||
         glm::dot(after - here, here - before) < 0) {
       corners.push_back(k);
     }
@@ -54,7 +55,7 @@ bool goodShape(const std::array<Vec3, 4>& p, const Vec3& normal) {
 /// Whether the vertices inside two opposite sides (corners a to b and c to d, around the loop)
 /// divide them in the same proportions.
 bool dividedAlike(const CoarseComplex& complex, std::span<const Index> side,
-                  std::span<const Index> opposite) {
+                  std::span<const Index> opposite, double coincidence) {
   if (side.size() != opposite.size()) return false;
   const Vec3& a = complex.vertices[side.front()];
   const Vec3& b = complex.vertices[opposite.back()];
@@ -64,16 +65,18 @@ bool dividedAlike(const CoarseComplex& complex, std::span<const Index> side,
     const Vec3& p = complex.vertices[side[i]];
     const Vec3& q = complex.vertices[opposite[opposite.size() - 1 - i]];
     const double difference = glm::length(p - a) / length - glm::length(q - b) / other;
-    if (std::abs(difference) * length > complex.coincidence) return false;
+    if (std::abs(difference) * length > coincidence) return false;
   }
   return true;
 }
 
 }  // namespace
 
-std::optional<FourSides> findFourSides(const CoarseComplex& complex, std::span<const Index> loop,
+std::optional<FourSides> findFourSides(const CoarseComplex& complex, const CoarsePolygon& polygon,
                                        std::span<const DirectedEdge> edges) {
-  const std::vector<std::size_t> corners = turnsOf(complex, loop);
+  const std::vector<Index>& loop = polygon.loops[0];
+  const double coincidence = complex.coincidenceOf(polygon);
+  const std::vector<std::size_t> corners = turnsOf(complex, loop, coincidence);
   if (corners.size() != 4) return std::nullopt;
   std::array<Vec3, 4> p;
   FourSides sides;
@@ -89,7 +92,7 @@ std::optional<FourSides> findFourSides(const CoarseComplex& complex, std::span<c
     const std::size_t end = corners[(k + 1) % 4];
     for (std::size_t i = corners[k]; i != end; i = (i + 1) % n) {
       // Vertices that are each in line with their neighbours may still form a curve.
-      if (distanceToLine(complex.vertices[loop[i]], p[k], p[(k + 1) % 4]) > complex.coincidence) {
+      if (distanceToLine(complex.vertices[loop[i]], p[k], p[(k + 1) % 4]) > coincidence) {
         return std::nullopt;
       }
       sides.edges[k].push_back(edges[i]);
@@ -97,8 +100,8 @@ std::optional<FourSides> findFourSides(const CoarseComplex& complex, std::span<c
     }
     vertices[k].push_back(loop[end]);
   }
-  if (!dividedAlike(complex, vertices[0], vertices[2]) ||
-      !dividedAlike(complex, vertices[1], vertices[3])) {
+  if (!dividedAlike(complex, vertices[0], vertices[2], coincidence) ||
+      !dividedAlike(complex, vertices[1], vertices[3], coincidence)) {
     return std::nullopt;
   }
   return sides;

@@ -8,12 +8,12 @@
 
 namespace radiosity {
 
-/// The four sides of a polygon whose only loop is `loop`: vertices in line with their neighbours
+/// The four sides of a polygon of one loop: vertices in line with their neighbours
 /// (closer than the coincidence) are no corners. Empty unless there are exactly four corners, all
 /// angles within 30 and 150 degrees, opposite sides differing by at most a factor 1.5, and the
 /// sides straight and their vertices dividing opposite sides in the same proportions. A bilinear
 /// grid over such a quadrilateral has convex cells.
-std::optional<FourSides> findFourSides(const CoarseComplex& complex, std::span<const Index> loop,
+std::optional<FourSides> findFourSides(const CoarseComplex& complex, const CoarsePolygon& polygon,
                                        std::span<const DirectedEdge> edges);
 
 }  // namespace radiosity

@@ -32,7 +32,7 @@ std::vector<double> fractions(const EdgeCuts& cuts, const std::vector<Index>& si
 }
 
 /// Whether two opposite sides have their points in the same places.
-bool cutAlike(const CoarseComplex& complex, const EdgeCuts& cuts, const std::vector<Index>& side,
+bool cutAlike(double coincidence, const EdgeCuts& cuts, const std::vector<Index>& side,
               const std::vector<Index>& opposite) {
   if (side.size() != opposite.size()) return false;
   const std::vector<double> s = fractions(cuts, side);
@@ -40,7 +40,7 @@ bool cutAlike(const CoarseComplex& complex, const EdgeCuts& cuts, const std::vec
   const double length = glm::length(cuts.point(side.back()) - cuts.point(side.front()));
   for (std::size_t k = 0; k < s.size(); ++k) {
     // The sides are divided alike within the coincidence, or by equal fractions but for rounding.
-    if (std::abs(s[k] - t[k]) * length > complex.coincidence + 1e-12 * length) return false;
+    if (std::abs(s[k] - t[k]) * length > coincidence + 1e-12 * length) return false;
   }
   return true;
 }
@@ -170,7 +170,7 @@ std::optional<PolygonCells> regionCells(const CoarseComplex& complex, const Edge
   region.size = size.size;
   region.longest = size.longest;
   region.improve = size.improve;
-  region.clearance = 2 * complex.coincidence;
+  region.clearance = 2 * complex.coincidenceOf(complex.polygons[polygon]);
   auto mesh = meshRegion(region);
   if (!mesh) return std::nullopt;
   PolygonCells result;
@@ -188,8 +188,9 @@ std::optional<PolygonCells> cellsOf(const CoarseComplex& complex, const EdgeCuts
   if (const auto& sides = cuts.fourSides(polygon)) {
     std::array<std::vector<Index>, 4> points;
     for (std::size_t k = 0; k < 4; ++k) points[k] = sidePoints(cuts, sides->edges[k]);
-    if (cutAlike(complex, cuts, points[0], points[2]) &&
-        cutAlike(complex, cuts, points[1], points[3])) {
+    const double coincidence = complex.coincidenceOf(complex.polygons[polygon]);
+    if (cutAlike(coincidence, cuts, points[0], points[2]) &&
+        cutAlike(coincidence, cuts, points[1], points[3])) {
       return gridCells(cuts, *sides, points);
     }
   }

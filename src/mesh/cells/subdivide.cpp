@@ -108,7 +108,7 @@ class Subdivision {
   /// Joins cells to patches of up to size^2; returns the number of patches.
   std::size_t join(double size) {
     parallelFor(cells_.size(), 16, [&](std::size_t p) {
-      if (!progress_.cancelled()) joinCellsOf(cells_[p], size);
+      if (!progress_.cancelled()) joinCellsOf(p, size);
     });
     progress_.check();
     return recount();
@@ -124,14 +124,15 @@ class Subdivision {
 
  private:
   /// `size`: 0 to join thin cells alone.
-  void joinCellsOf(PolygonCells& polygon, double size) const {
+  void joinCellsOf(std::size_t p, double size) {
+    PolygonCells& polygon = cells_[p];
     polygon.groups.clear();
     if (polygon.cells.size() < 2) return;
     std::vector<Vec3> points;
     points.reserve(polygon.boundary.size() + polygon.interior.size());
     for (const Index id : polygon.boundary) points.push_back(cuts_.point(id));
     points.insert(points.end(), polygon.interior.begin(), polygon.interior.end());
-    const JoinLimits limits{size, kThin * complex_.coincidence};
+    const JoinLimits limits{size, kThin * complex_.coincidenceOf(complex_.polygons[p])};
     if (size == 0 && !anyThin(polygon.cells, points, limits.thinnest)) return;
     polygon.groups = joinCells(polygon.cells, polygon.inner, points, limits);
   }
@@ -162,14 +163,14 @@ class Subdivision {
       here.improve = size.improve || !plain;
       const Made made = !plain ? Made::to_size : here.improve ? Made::plain : Made::plain_as_it_is;
       if (plain && made_[p] == made) {
-        if (!cells_[p].groups.empty()) joinCellsOf(cells_[p], 0);
+        if (!cells_[p].groups.empty()) joinCellsOf(p, 0);
         progress_.advance();
         return;
       }
       made_[p] = Made::to_size;
       if (auto cells = cellsOf(complex_, cuts_, p, here)) {
         cells_[p] = std::move(*cells);
-        joinCellsOf(cells_[p], 0);
+        joinCellsOf(p, 0);
         made_[p] = made;
       } else {
         cells_[p] = {};
@@ -325,6 +326,11 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
   }
   PatchMesh mesh =
       assemblePatches(complex, scene, subdivision.cuts(), subdivision.cells(), progress);
+  double least = complex.coincidence;
+  for (const CoarsePolygon& polygon : complex.polygons) {
+    least = std::min(least, complex.coincidenceOf(polygon));
+  }
+  keepCoincidence(mesh, least);
   fillFigures(mesh, report);
   noteTJunctions(mesh, complex.coincidence, report);
   accountForCells(complex, mesh, report);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mesh/welded_points.h"
@@ -20,24 +21,32 @@ enum class Handling : std::uint8_t {
 struct InputFace {
   std::vector<Index> loop;
   Index surface = kNone;
-  Index source = kNone;  ///< face of the scene
-  Vec3 normal{0.0};      ///< unit
-  double area = 0;       ///< m^2, in the file (before welding)
+  Index source = kNone;    ///< face of the scene
+  Vec3 normal{0.0};        ///< unit
+  double area = 0;         ///< m^2, in the file (before welding)
+  double coincidence = 0;  ///< metres: the least of its corners'
   Handling handling = Handling::merged;
 };
 
 struct InputFaces {
-  Vec3 origin{0.0};  ///< subtracted from every vertex: centre of the bounding box
-  double coincidence = 0;
-  WeldedPoints points{1.0};
+  Vec3 origin{0.0};              ///< subtracted from every vertex: centre of the bounding box
+  double diagonal = 0;           ///< metres, of the bounding box
+  double coincidence = 0;        ///< metres: the largest; a point of a small thing has less
+  WeldedPoints points;           ///< their radii are coincidences
   std::vector<InputFace> faces;  ///< sorted by loop: independent of the order in the file
   std::vector<InputFace> uncut;  ///< faces that are taken as they are, sorted likewise
 };
 
+/// The least coincidence of some points.
+double coincidenceOf(const WeldedPoints& points, std::span<const Index> some);
+
 /// Recentres and welds; splits polygons that are not planar; drops faces thinner than coincidence
-/// and duplicate faces. Fills the report's figures and notes on these, and the surfaces' `given`,
-/// `degenerate` and (duplicates) `overlapped`. `handling`: by face of the scene. Errors: InputError
-/// for a coordinate that is not finite, or a scene without area.
+/// and duplicate faces. Points closer than MeshOptions::weld of the scene's diagonal coincide, but
+/// never farther than a share of the thing that they belong to (1e-4, or `weld` if that is more):
+/// faces of one surface that are connected, however they are cut. Fills the report's figures and
+/// notes on these, and the surfaces' `given`, `degenerate` and (duplicates) `overlapped`.
+/// `handling`: by face of the scene. Errors: InputError for a coordinate that is not finite, a
+/// scene without area, or a surface that would lose all of its area.
 InputFaces cleanFaces(const Scene& scene, const MeshOptions& options,
                       const std::vector<Handling>& handling, MeshReport& report);
 

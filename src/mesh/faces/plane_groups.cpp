@@ -27,7 +27,7 @@ struct Neighbours {
     for (const InputFace& face : input.faces) {
       Box3 box;
       for (const Index v : face.loop) box.add(input.points[v]);
-      boxes.push_back(box.grown(0.5 * input.coincidence));
+      boxes.push_back(box.grown(0.5 * face.coincidence));
     }
     const auto pairs = overlappingPairs(boxes);
     for (const auto& [a, b] : pairs) {
@@ -62,6 +62,7 @@ class Grower {
   Plane grow(Index seed) {
     Plane plane;
     plane.normal = input_.faces[seed].normal;
+    plane.coincidence = input_.faces[seed].coincidence;
     plane.offset = centre(plane.normal, {seed});
     plane.faces = reach(plane, seed);
     while (plane.faces.size() > 1) {
@@ -97,9 +98,9 @@ class Grower {
 
   bool within(const Plane& plane, Index f) const {
     const auto& loop = input_.faces[f].loop;
-    return std::all_of(loop.begin(), loop.end(), [&](Index v) {
-      return std::abs(plane.distance(input_.points[v])) <= 0.5 * input_.coincidence;
-    });
+    const double most = 0.5 * std::min(plane.coincidence, input_.faces[f].coincidence);
+    return std::all_of(loop.begin(), loop.end(),
+                       [&](Index v) { return std::abs(plane.distance(input_.points[v])) <= most; });
   }
 
   bool holds(const Plane& plane, const std::vector<Index>& faces) const {
@@ -156,6 +157,7 @@ class Grower {
     const double determinant = uu * vv - uv * uv;
     Plane out;
     out.normal = n;
+    out.coincidence = plane.coincidence;
     if (determinant > 0) {
       const double a = (uh * vv - vh * uv) / determinant;
       const double b = (vh * uu - uh * uv) / determinant;

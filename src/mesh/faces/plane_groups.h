@@ -12,6 +12,7 @@ namespace radiosity {
 struct Plane {
   Vec3 normal{0.0};  ///< unit
   double offset = 0;
+  double coincidence = 0;    ///< of the face it was begun with, m
   std::vector<Index> faces;  ///< ascending, into InputFaces::faces
 
   double distance(const Vec3& p) const { return glm::dot(normal, p) - offset; }

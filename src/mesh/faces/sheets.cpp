@@ -48,6 +48,7 @@ void addTriangle(const InputFaces& input, Index face, const Sheet& common,
     return std::pair(std::min(edge[0], edge[1]), std::max(edge[0], edge[1]));
   });
   for (const Index v : loop) sheet.box.add(input.points[v]);
+  sheet.coincidence = input.faces[face].coincidence;
 }
 
 /// Adds the sheets of faces that already agree in plane, surface and facing.
@@ -70,6 +71,7 @@ void addSheets(const InputFaces& input, const std::vector<Index>& faces, const S
     Sheet& sheet = out[it->second];
     sheet.faces.push_back(f);
     for (const Index v : input.faces[f].loop) sheet.box.add(input.points[v]);
+    sheet.coincidence = std::min(sheet.coincidence, input.faces[f].coincidence);
   }
   for (const auto& [ends, edge] : edges) {
     if (edge.isInside()) continue;

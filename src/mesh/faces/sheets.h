@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -22,6 +23,7 @@ struct Sheet {
   std::vector<Index> faces;                 ///< into InputFaces::faces
   std::vector<std::array<Index, 2>> edges;  ///< boundary, the sheet on the left seen from its front
   Box3 box;
+  double coincidence = std::numeric_limits<double>::infinity();  ///< the least of its faces', m
 };
 
 std::vector<Sheet> findSheets(const InputFaces& input, const std::vector<Plane>& planes);

@@ -174,7 +174,8 @@ class EnclosureSearch {
 double coincidenceOf(const PatchMesh& mesh) {
   Box3 box;
   for (const Vec3& vertex : mesh.vertices) box.add(vertex);
-  return mesh.vertices.empty() ? 0 : MeshOptions().weld * glm::distance(box.low, box.high);
+  if (mesh.vertices.empty()) return 0;
+  return mesh.coincidence.value_or(MeshOptions().weld * glm::distance(box.low, box.high));
 }
 
 std::vector<Index> firstAtSamePoint(const PatchMesh& mesh) {

@@ -9,7 +9,8 @@
 
 namespace radiosity {
 
-/// The coincidence of a mesh without its scene: the default share of its diagonal, metres.
+/// The coincidence of a mesh, metres: its own or, if it has none, the default share of its
+/// diagonal.
 double coincidenceOf(const PatchMesh& mesh);
 
 /// For every vertex the first one at exactly the same point (faces_as_patches gives each face its

@@ -8,12 +8,14 @@
 #include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
 #include "base/geometry/segment.h"
+#include "mesh/box_pairs.h"
 #include "mesh/patches/face_crossings.h"
 #include "mesh/patches/face_polygons.h"
 #include "mesh/patches/mesh_figures.h"
 #include "mesh/patches/patch_arrays.h"
 #include "mesh/polygons/complex.h"
 #include "mesh/triangulate.h"
+#include "scene/checks/close_faces.h"
 
 namespace radiosity {
 
@@ -46,6 +48,11 @@ bool insideEvenOdd(const Vec2& p, std::span<const Vec2> outline) {
   return inside;
 }
 
+/// The largest coincidence as a share of a surface's box.
+constexpr double kShareOfSurface = 1e-4;
+/// The smallest as a share of the scene's: the rounding of a coordinate, with room for some more.
+constexpr double kLeastShare = 0x1p-44;
+
 class FacePatches {
  public:
   FacePatches(const Scene& scene, const MeshOptions& options, MeshReport& report,
@@ -55,6 +62,13 @@ class FacePatches {
     for (const Index v : scene.corners) box.add(scene.vertices[v]);
     centre_ = box.centre();
     coincidence_ = options.weld * box.diagonal();
+    std::vector<Box3> boxes(scene.surfaces.size());
+    for (Index f = 0; f < scene.faceCount(); ++f) {
+      for (const Index v : scene.face(f)) boxes[scene.face_surface[f]].add(scene.vertices[v]);
+    }
+    for (const Box3& of : boxes) {
+      of_surface_.push_back(std::min(coincidence_, kShareOfSurface * of.diagonal()));
+    }
   }
 
   PatchMesh build() {
@@ -84,6 +98,8 @@ class FacePatches {
     }
     appendBacks(mesh_, two_sided);
     numberWithinSurfaces(mesh_);
+    keepCoincidence(mesh_,
+                    std::max(least_coincidence_, kLeastShare * boxOf(mesh_.vertices).diagonal()));
     fillFigures(mesh_, report_);
     progress_.check();
     report_.t_junctions = countTJunctions(mesh_, coincidence_);
@@ -111,11 +127,13 @@ class FacePatches {
     FaceShape shape;
     // The area of a face that fits between two parallel lines a coincidence apart cannot be told
     // from rounding. Its longest diagonal from one corner is at least half its diameter.
-    const bool degenerate = glm::length(area) <= 0.5 * coincidence_ * longest;
+    const double coincidence = of_surface_[scene_.face_surface[f]];
+    const bool degenerate = glm::length(area) <= 0.5 * coincidence * longest;
     if (degenerate) {
       surface.degenerate += glm::length(area);
       ++report_.degenerate_faces;
     } else {
+      least_coincidence_ = std::min(least_coincidence_, coincidence);
       shape.area = glm::length(area);
       shape.normal = area / shape.area;
       mean = appendPieces(f, p, mean, shape);
@@ -179,7 +197,36 @@ class FacePatches {
     return frame.lift(centroid);
   }
 
+  /// Pairs of faces that face each other across a gap that counts as nothing.
+  void noteLostGaps() {
+    std::vector<Box3> boxes;
+    std::vector<Index> faces;
+    for (Index f = 0; f < scene_.faceCount(); ++f) {
+      if (!(shapes_[f].area > 0)) continue;
+      Box3 box;
+      for (const Index v : scene_.face(f)) box.add(scene_.vertices[v]);
+      boxes.push_back(box.grown(0.5 * of_surface_[scene_.face_surface[f]]));
+      faces.push_back(f);
+    }
+    const auto wanted = [&](Index i, Index j) {
+      const Index f = faces[i];
+      const Index g = faces[j];
+      // Planes that are nearer than the coincidence everywhere turn by little.
+      if (glm::dot(shapes_[f].normal, shapes_[g].normal) > -1 + 1e-6) return false;
+      const double gap = gapBetween(scene_, f, g);
+      return gap > 0 && gap < std::min(of_surface_[scene_.face_surface[f]],
+                                       of_surface_[scene_.face_surface[g]]);
+    };
+    LostGaps lost;
+    for (const auto& [i, j] : overlappingPairs(boxes, &progress_, wanted)) {
+      lost.add(scene_, faces[i], faces[j], gapBetween(scene_, faces[i], faces[j]));
+    }
+    const std::vector<Note> notes = lost.notes(scene_, coincidence_);
+    report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
+  }
+
   void findings() {
+    noteLostGaps();
     const auto crossings = findCrossings(scene_, pieces_, coincidence_, progress_);
     report_.crossings = crossings.size();
     if (!crossings.empty()) {
@@ -213,6 +260,8 @@ class FacePatches {
   Progress& progress_;
   Vec3 centre_{0.0};
   double coincidence_ = 0;
+  std::vector<double> of_surface_;  ///< coincidence: a small thing has less
+  double least_coincidence_ = std::numeric_limits<double>::infinity();
   PatchMesh mesh_;
   std::vector<FaceShape> shapes_;
   std::vector<FacePiece> pieces_;

@@ -7,6 +7,7 @@
 
 #include "base/geometry/plane_frame.h"
 #include "base/parallel.h"
+#include "mesh/patches/enclosures.h"
 #include "mesh/patches/face_locator.h"
 
 namespace radiosity {
@@ -253,6 +254,11 @@ PatchMesh assemblePatches(const CoarseComplex& complex, const Scene& scene, cons
   appendBacks(mesh, two_sided);
   numberWithinSurfaces(mesh);
   return mesh;
+}
+
+void keepCoincidence(PatchMesh& mesh, double least) {
+  // The box of the mesh is the scene's, but for rounding and for what is buried.
+  if (least < 0.5 * coincidenceOf(mesh)) mesh.coincidence = least;
 }
 
 void appendBacks(PatchMesh& mesh, std::span<const Index> fronts) {

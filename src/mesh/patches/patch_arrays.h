@@ -8,6 +8,9 @@
 
 namespace radiosity {
 
+/// Sets the mesh's coincidence if `least` is clearly less than the usual one.
+void keepCoincidence(PatchMesh& mesh, double least);
+
 /// The polygon whose cells polygon `p` uses: itself or, reversed, the polygon back to back with it,
 /// so that both are cut alike.
 inline std::size_t cellSource(const CoarseComplex& complex, std::size_t p) {

@@ -20,6 +20,7 @@
 #include "mesh/polygons/merge_cells.h"
 #include "mesh/polygons/uncut_faces.h"
 #include "scene/checks/checks.h"
+#include "scene/checks/close_faces.h"
 #include "scene/checks/far_apart.h"
 
 namespace radiosity {
@@ -204,6 +205,23 @@ bool Attempt::run(CoarseComplex& complex, bool some_alone, std::vector<Handling>
   return stuck.empty();
 }
 
+/// Polygons back to back whose faces faced each other across a gap: welding has closed it.
+void noteLostGaps(const Scene& scene, const CoarseComplex& complex, MeshReport& report) {
+  LostGaps lost;
+  for (std::size_t p = 0; p < complex.polygons.size(); ++p) {
+    const CoarsePolygon& polygon = complex.polygons[p];
+    if (polygon.opposite == kNone || polygon.opposite < p) continue;
+    for (const Index f : polygon.faces) {
+      for (const Index g : complex.polygons[polygon.opposite].faces) {
+        const double gap = gapBetween(scene, f, g);
+        if (gap > 0) lost.add(scene, f, g, gap);
+      }
+    }
+  }
+  const std::vector<Note> notes = lost.notes(scene, complex.coincidence);
+  report.notes.insert(report.notes.end(), notes.begin(), notes.end());
+}
+
 }  // namespace
 
 CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshReport& report,
@@ -214,6 +232,7 @@ CoarseComplex buildComplex(const Scene& scene, const MeshOptions& options, MeshR
     CoarseComplex complex;
     if (attempt.run(complex, attempts < kAttemptsAlone, handling)) {
       report = attempt.report();
+      noteLostGaps(scene, complex, report);
       if (const auto note = noteFarApart(scene, options.weld)) report.notes.push_back(*note);
       return complex;
     }

@@ -23,6 +23,7 @@ struct CoarsePolygon {
   /// The polygon on the same area that faces the other way (a plate without thickness), or kNone.
   /// It has the same loops, reversed, and the same inner edges.
   Index opposite = kNone;
+  double coincidence = 0;  ///< metres, the least of its vertices'; 0: the complex's
   /// Faces of the scene from which this polygon was merged (for source_face and textures).
   std::vector<Index> faces;
 };
@@ -33,8 +34,12 @@ struct CoarsePolygon {
 struct CoarseComplex {
   std::vector<Vec3> vertices;  ///< recentred on `origin`
   Vec3 origin{0.0};            ///< add it to a vertex to get the place in the scene
-  double coincidence = 0;      ///< metres: the one length tolerance
+  double coincidence = 0;      ///< metres: the one length tolerance, but of small things
   std::vector<CoarsePolygon> polygons;
+
+  double coincidenceOf(const CoarsePolygon& polygon) const {
+    return polygon.coincidence > 0 ? polygon.coincidence : coincidence;
+  }
 };
 
 /// Welds and merges faces, cuts them at contacts, and drops buried parts. Fills the report's repair

@@ -122,7 +122,9 @@ std::vector<Vec3> DraftPolygons::numberVertices() {
 
 CoarsePolygon DraftPolygons::polygonOf(const Draft& draft, std::vector<Index> faces) const {
   CoarsePolygon p;
+  p.coincidence = cells_.input.coincidence;
   for (std::vector<Index> loop : draft.loops) {
+    p.coincidence = std::min(p.coincidence, coincidenceOf(cells_.input.points, loop));
     for (Index& v : loop) v = number_[v];
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     p.loops.push_back(std::move(loop));

@@ -75,12 +75,14 @@ double MergeAccount::movedArea(const Draft& draft) const {
 /// The most area that straightening can move: a strip of two coincidences along the border, times
 /// two for rounding.
 double MergeAccount::areaInReach(const Draft& draft) const {
-  double length = 0;
+  const WeldedPoints& points = cells_.input.points;
+  double area = 0;
   for (const Index e : draft.border) {
-    length += glm::distance(cells_.input.points[cells_.edges[e].a],
-                            cells_.input.points[cells_.edges[e].b]);
+    const Edge& edge = cells_.edges[e];
+    area += coincidenceOf(points, std::array{edge.a, edge.b}) *
+            glm::distance(points[edge.a], points[edge.b]);
   }
-  return 4.0 * cells_.input.coincidence * length;
+  return 4.0 * area;
 }
 
 void MergeAccount::accountForStraightening(MeshReport& report) const {

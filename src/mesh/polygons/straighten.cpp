@@ -10,11 +10,9 @@ namespace {
 
 class Straightener {
  public:
-  Straightener(const WeldedPoints& points, double coincidence,
-               const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,
-               const std::vector<bool>& keep)
+  Straightener(const WeldedPoints& points, const std::vector<std::array<Index, 2>>& edges,
+               const EdgeUses& uses, const std::vector<bool>& keep)
       : points_(points),
-        coincidence_(coincidence),
         edges_(edges),
         uses_(uses),
         keep_(keep),
@@ -78,7 +76,9 @@ class Straightener {
       const Vec3 d = points_[v[k]] - a;
       const double along = glm::dot(d, chord);
       if (along <= reached || along >= length * length) return false;
-      if (glm::length(glm::cross(d, chord)) >= coincidence_ * length) return false;
+      const double reach =
+          std::min({points_.radius(v[k]), points_.radius(v[begin]), points_.radius(v[end])});
+      if (glm::length(glm::cross(d, chord)) >= reach * length) return false;
       reached = along;
     }
     return true;
@@ -119,7 +119,6 @@ class Straightener {
   }
 
   const WeldedPoints& points_;
-  double coincidence_;
   const std::vector<std::array<Index, 2>>& edges_;
   const EdgeUses& uses_;
   const std::vector<bool>& keep_;
@@ -130,10 +129,9 @@ class Straightener {
 
 }  // namespace
 
-StraightEdges straighten(const WeldedPoints& points, double coincidence,
-                         const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,
-                         const std::vector<bool>& keep) {
-  return Straightener(points, coincidence, edges, uses, keep).run();
+StraightEdges straighten(const WeldedPoints& points, const std::vector<std::array<Index, 2>>& edges,
+                         const EdgeUses& uses, const std::vector<bool>& keep) {
+  return Straightener(points, edges, uses, keep).run();
 }
 
 }  // namespace radiosity

@@ -29,8 +29,7 @@ struct StraightEdges {
 /// between two neighbours that stay lie within coincidence of the line between them. Two edges
 /// become one only if both have the same `uses`: they border or cut the same polygons. Vertices
 /// marked in `keep` stay.
-StraightEdges straighten(const WeldedPoints& points, double coincidence,
-                         const std::vector<std::array<Index, 2>>& edges, const EdgeUses& uses,
-                         const std::vector<bool>& keep);
+StraightEdges straighten(const WeldedPoints& points, const std::vector<std::array<Index, 2>>& edges,
+                         const EdgeUses& uses, const std::vector<bool>& keep);
 
 }  // namespace radiosity

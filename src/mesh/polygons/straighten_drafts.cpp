@@ -57,7 +57,7 @@ StraightEdges DraftStraightener::run() {
   std::vector<bool> keep(cells_.input.points.size(), false);
   std::vector<bool> stale(drafts_.list.size(), true);
   while (std::find(stale.begin(), stale.end(), true) != stale.end()) {
-    straight_ = straighten(cells_.input.points, cells_.input.coincidence, ends, uses, keep);
+    straight_ = straighten(cells_.input.points, ends, uses, keep);
     std::vector<char> sound(drafts_.list.size(), 1);
     parallelFor(drafts_.list.size(), 256, [&](std::size_t d) {
       if (!stale[d]) return;

@@ -40,6 +40,7 @@ double appendTriangle(const std::array<Vec3, 3>& corners, const InputFace& face,
   }
   p.normal = glm::normalize(area);
   p.surface = face.surface;
+  p.coincidence = face.coincidence;
   p.back = back;
   p.faces = {face.source};
   complex.polygons.push_back(std::move(p));

@@ -70,10 +70,10 @@ std::optional<Note> noteFarApart(const Scene& scene, double weld) {
     const Index face = boxes[first_are_fewer ? 0 : parted->first].face;
     return Note{Severity::warning,
                 fmt::format("{} of {} faces ({}) lie {:.3g} m from all others: lengths below "
-                            "{:.3g} m, a share of the scene's diagonal, count as nothing; move "
-                            "these faces closer or leave them out",
+                            "{:.3g} m, a share of the scene's diagonal, count as nothing in things "
+                            "larger than {:.3g} m; move these faces closer or leave them out",
                             count, boxes.size(), scene.surfaces[scene.face_surface[face]].name,
-                            parted->gap, weld * whole.diagonal())};
+                            parted->gap, weld * whole.diagonal(), 1e4 * weld * whole.diagonal())};
   }
   return std::nullopt;
 }

@@ -10,6 +10,7 @@
 #include "formfactor/exact/elements/backs_hidden_from_all.h"
 #include "formfactor/exact/elements/clusters.h"
 #include "formfactor/exact/elements/convex_pieces.h"
+#include "mesh/patches/enclosures.h"
 
 namespace radiosity {
 namespace {
@@ -108,7 +109,7 @@ class ElementBuilder {
     int exponent = 0;
     std::frexp(diagonal, &exponent);
     set_.scale = std::ldexp(1.0, -exponent);
-    set_.coincidence = MeshOptions().weld * diagonal * set_.scale;
+    set_.coincidence = coincidenceOf(mesh_) * set_.scale;
   }
 
   Vec3 place(Index vertex) const { return (mesh_.vertices[vertex] - set_.middle) * set_.scale; }

@@ -68,7 +68,7 @@ struct ElementSet {
 
   double scale = 1;        ///< power of two
   Vec3 middle{0.0};        ///< element coordinates are (mesh coordinates - middle) * scale
-  double coincidence = 0;  ///< 1e-7 of the scene's diagonal, scaled: the one length tolerance
+  double coincidence = 0;  ///< of the mesh, scaled: the one length tolerance
 
   std::vector<Index> patch;                  ///< E; of a black element: N + surface
   std::vector<Index> facet;                  ///< E

@@ -38,13 +38,14 @@ OccluderPolygons::OccluderPolygons(const PatchMesh& mesh, const ElementSet& elem
     return std::tie(mesh.surface_names[source.surface[a]], source.index_in_surface[a]) <
            std::tie(mesh.surface_names[source.surface[b]], source.index_in_surface[b]);
   });
-  WeldedPoints welded(coincidence);
+  WeldedPoints welded;
   std::vector<Index> place(mesh.vertices.size(), kNone);
   for (const Index p : order) {
     for (std::size_t l = source.loopBegin(p); l < source.loopEnd(p); ++l) {
       for (const Index v : source.loop(l)) {
         if (place[v] == kNone) {
-          place[v] = welded.insert((mesh.vertices[v] - elements.middle) * elements.scale);
+          place[v] =
+              welded.insert((mesh.vertices[v] - elements.middle) * elements.scale, coincidence);
         }
       }
     }
