@@ -1,5 +1,7 @@
-// A library of this program that is opened when it is first needed.
+// Libraries and helpers of this program that are opened when they are first needed.
 #pragma once
+
+#include <string>
 
 namespace radiosity {
 
@@ -10,5 +12,8 @@ void* entryOf(const char* name, const char* entry);
 
 /// The same; RunError "NAME cannot be used (why); install it again ..." if there is none.
 void* requiredEntryOf(const char* name, const char* entry);
+
+/// The path of a file, no library, that lies where side libraries do. Errors: RunError as above.
+std::string requiredFileOf(const char* name);
 
 }  // namespace radiosity

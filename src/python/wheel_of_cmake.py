@@ -47,7 +47,7 @@ def built(folder):
         subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja",
                         *(f"-D{option}" for option in options)], check=True)
     subprocess.run(["cmake", "--build", folder, "--target", "radiosity", "radiosity_cli",
-                    "radiosity_images", "radiosity_draco", "radiosity_python"], check=True)
+                    "radiosity_images", "radiosity_draco", "radiosity_assimp", "radiosity_python"], check=True)
 
 
 def parts(prefix, data):
@@ -61,6 +61,8 @@ def parts(prefix, data):
         if path.is_file():
             yield path, str(path.relative_to(package))
     yield prefix / "bin/radiosity", f"{data}/bin/radiosity"
+    helper = package.parents[1] / "radiosity-assimp"
+    yield helper, f"{data}/{helper.relative_to(prefix)}"
     for path in sorted(package.parents[1].glob("*.so*")):
         if not path.is_symlink() and not re.search(r"\.so\.\d+\.", path.name):
             yield path, f"{data}/{path.relative_to(prefix)}"

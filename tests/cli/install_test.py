@@ -65,6 +65,9 @@ class Install(unittest.TestCase):
             self.assertGreater((root / "lit.png").stat().st_size, 1000)
             version = run(str(root / "prefix/bin/radiosity"), "--version")
             self.assertIn("0.1.0", version)
+            # Assimp's formats take a program beside the library.
+            (root / "a.x3d").write_text("<X3D><Scene><Shape><Box/></Shape></Scene></X3D>")
+            self.assertIn("6 faces", run(str(root / "prefix/bin/radiosity"), "info", str(root / "a.x3d")))
             # Pictures take a library that the program opens only now.
             picture = f"{ROOT}/data/cornell-box.png"
             same = run(str(root / "prefix/bin/radiosity"), "compare", picture, picture)

@@ -42,6 +42,15 @@ class ModelsOfOthersTest(CliTest):
         # 112 of 158 in Debian 12; the others are of glTF 1, broken on purpose, or points alone.
         self.assertGreater(read, len(models) // 2)
 
+    def test_a_file_at_which_assimp_aborts_is_refused_in_a_line(self):
+        """A byte before the name of a sub-chunk, which makes one of an absurd size: an assertion fails."""
+        broken = bytearray((MODELS / "LWO/LWO2/box_2uv_1unused.lwo").read_bytes())
+        broken[981:984] = b"\x58\x05\x41"
+        (self.folder / "a.lwo").write_bytes(broken)
+        self.assertEqual(self.refuse("info", "a.lwo"),
+                         "radiosity: a.lwo: is damaged: Assimp, the library that reads this format, gave up; "
+                         "export it again, or save it as glTF or OBJ")
+
     def test_a_building_has_its_names_materials_and_metres(self):
         file = MODELS / "IFC/AC14-FZK-Haus.ifc"
         scene = self.report("info", file)["scene"]

@@ -2,7 +2,11 @@
 
 import math
 import os
+import pathlib
+import shutil
+import socket
 import struct
+import subprocess
 import sys
 import unittest
 
@@ -10,7 +14,7 @@ import h5py
 import numpy as np
 from PIL import Image
 
-from cli_runner import CliTest
+from cli_runner import PROGRAM, CliTest
 
 AC3D = """AC3Db
 MATERIAL "paint" rgb 1 1 1  amb 0.2 0.2 0.2  emis 0 0 0  spec 0 0 0  shi 10  trans 0
@@ -442,6 +446,67 @@ class OtherFormats(CliTest):
                               ("a.x3d", "<X3D/>"), ("a.fbx", b"Kaydara FBX Binary  \0\x1a\0\xff\xff\xff\xff")]:
             with self.subTest(name=name):
                 self.refuse("info", self.put(name, content), words=[f"radiosity: {name}: "])
+
+
+class AssimpProcessTest(CliTest):
+    """Assimp runs in a process of its own, played here by programs that end as it does."""
+
+    def run_with(self, script):
+        """`info` of a copy of the program whose helper is a shell script."""
+        folder = self.folder / "program"
+        folder.mkdir()
+        program = pathlib.Path(PROGRAM)
+        shutil.copy(program, folder / "radiosity")
+        for library in program.parent.glob("libradiosity*"):
+            (folder / library.name).symlink_to(library)
+        if script is not None:
+            helper = folder / "radiosity-assimp"
+            helper.write_text("#!/bin/sh\n" + script)
+            helper.chmod(0o755)
+        (self.folder / "a.dae").write_text(COLLADA)
+        return subprocess.run([folder / "radiosity", "info", "a.dae"], cwd=self.folder, capture_output=True,
+                              env={**os.environ, "LD_LIBRARY_PATH": ""}, text=True, timeout=60)
+
+    def assert_says(self, run, code, line):
+        self.assertEqual((run.returncode, run.stdout, run.stderr), (code, "", f"radiosity: {line}\n"))
+
+    CURE = (": Assimp, the library that reads this format, gave up; export it again, or save it as glTF "
+            "or OBJ")
+
+    def test_an_abort_is_one_line(self):
+        run = self.run_with("echo noise; echo noise >&2; kill -ABRT $$")
+        self.assert_says(run, 2, "a.dae: is damaged" + self.CURE)
+
+    def test_limits_are_named(self):
+        self.assert_says(self.run_with("exit 3"), 2,
+                         "a.dae: needs far more memory than its size explains" + self.CURE)
+
+    def test_too_much_time_is_named(self):
+        self.assert_says(self.run_with("kill -XCPU $$"), 2,
+                         "a.dae: takes far longer than its size explains" + self.CURE)
+
+    def test_an_answer_that_is_none_is_refused(self):
+        run = self.run_with("head -c 100000 /dev/zero >&0; exit 0")
+        self.assert_says(run, 2, "a.dae: is damaged" + self.CURE)
+
+    def test_a_missing_helper_is_named(self):
+        run = self.run_with(None)
+        self.assertEqual(run.returncode, 1)
+        self.assertRegex(run.stderr, r"\Aradiosity: radiosity-assimp cannot be used \(no such file\); "
+                                     r"install it again [^\n]*\n\Z")
+
+    def test_it_ends_with_the_program(self):
+        ours, its = socket.socketpair()
+        helper = pathlib.Path(PROGRAM).parent / "radiosity-assimp"
+        starts = "import os, subprocess, sys; subprocess.run([sys.argv[1], str(os.getpid())], stdin=0)"
+        with ours, subprocess.Popen([sys.executable, "-c", starts, helper], stdin=its) as program:
+            its.close()
+            ours.settimeout(0.5)
+            with self.assertRaises(TimeoutError):  # it waits for a request
+                ours.recv(1)
+            program.kill()
+            ours.settimeout(30)
+            self.assertEqual(ours.recv(1), b"")  # nobody holds its end any more
 
 
 if __name__ == "__main__":

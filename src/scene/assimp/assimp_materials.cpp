@@ -1,6 +1,7 @@
 #include "scene/assimp/assimp_materials.h"
 
-#include <assimp/scene.h>
+#include <assimp/material.h>
+#include <assimp/mesh.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <utility>
 
 #include "base/srgb.h"
-#include "scene/assimp/assimp_library.h"
 #include "scene/image_path.h"
 #include "scene/text.h"
 #include "scene/texture.h"
@@ -22,104 +22,89 @@ namespace {
 
 class AssimpMaterialReader {
  public:
-  AssimpMaterialReader(const aiScene& file, const std::map<unsigned, std::string>& names,
+  AssimpMaterialReader(const AssimpScene& file, const std::map<unsigned, std::string>& names,
                        const SceneOptions& options, Scene& scene, FeatureNotes& ignored)
       : file_(file), known_names_(names), options_(options), scene_(scene), ignored_(ignored) {}
 
   std::vector<AssimpMaterial> read() {
     std::vector<AssimpMaterial> all;
-    for (unsigned m = 0; m < file_.mNumMaterials; ++m) {
+    for (unsigned m = 0; m < file_.materials.size(); ++m) {
       if (!known_names_.empty() && !known_names_.contains(m)) {
-        all.push_back({kNone, 0, false});
+        all.push_back({kNone, false});
         continue;
       }
-      const std::string name = nameOf(*file_.mMaterials[m], m);
-      const Index index = added(name, convert(*file_.mMaterials[m], m, name));
-      all.push_back({index, set_, has_colour_});
+      const std::string name = nameOf(file_.materials[m], m);
+      const Index index = added(name, convert(file_.materials[m], m, name));
+      all.push_back({index, has_colour_});
     }
     return all;
   }
 
  private:
-  std::string nameOf(const aiMaterial& given, unsigned number) const;
-  Material convert(const aiMaterial& given, unsigned number, std::string name);
+  std::string nameOf(const AssimpFileMaterial& given, unsigned number) const;
+  Material convert(const AssimpFileMaterial& given, unsigned number, std::string name);
   Index added(const std::string& name, Material material);
-  std::optional<Vec3> colour(const aiMaterial& given, const char* key) const;
-  Index texture(const aiMaterial& given, const std::string& material);
-  LoadedTexture& loaded(const std::string& name, bool repeat);
-  TextureResult readImage(const std::string& name);
+  Index texture(const AssimpFileMaterial& given, const std::string& material);
+  LoadedTexture& loaded(const AssimpTexture& texture, bool repeat);
+  TextureResult readImage(const AssimpTexture& texture);
 
-  const aiScene& file_;
+  const AssimpScene& file_;
   const std::map<unsigned, std::string>& known_names_;  ///< by number
   const SceneOptions& options_;
   Scene& scene_;
   FeatureNotes& ignored_;
-  const AssimpLibrary& library_ = assimpLibrary();
   UniqueNames names_;
   std::map<std::pair<std::string, bool>, LoadedTexture> texture_of_;  ///< by name, repeat
   std::map<std::string, std::vector<Index>> added_;                   ///< by the name in the file
-  unsigned set_ = 0;         ///< of texture coordinates, of the present material
-  bool has_colour_ = false;  ///< the present material
+  bool has_colour_ = false;                                           ///< the present material
 };
 
-// We write out keys of materials, since AI_MATKEY macros expand to three arguments at once.
-
-std::optional<Vec3> AssimpMaterialReader::colour(const aiMaterial& given, const char* key) const {
-  aiColor4D found;
-  if (library_.getMaterialColor(&given, key, 0, 0, &found) != AI_SUCCESS) return std::nullopt;
-  return Vec3(double(found.r), double(found.g), double(found.b));
+Vec3 colourOr(const std::optional<std::array<float, 3>>& given, const Vec3& otherwise) {
+  if (!given) return otherwise;
+  const auto& [red, green, blue] = *given;
+  return Vec3(double(red), double(green), double(blue));
 }
 
 /// The name in the file, or nothing.
-std::string AssimpMaterialReader::nameOf(const aiMaterial& given, unsigned number) const {
+std::string AssimpMaterialReader::nameOf(const AssimpFileMaterial& given, unsigned number) const {
   const auto known = known_names_.find(number);
   if (known != known_names_.end()) return known->second;
-  aiString text;
-  const bool is_named = library_.getMaterialString(&given, AI_MATKEY_NAME, &text) == AI_SUCCESS;
-  return is_named ? text.C_Str() : "";
+  return given.name;
 }
 
-Material AssimpMaterialReader::convert(const aiMaterial& given, unsigned number, std::string name) {
-  set_ = 0;
+Material AssimpMaterialReader::convert(const AssimpFileMaterial& given, unsigned number,
+                                       std::string name) {
   has_colour_ = false;
   // Assimp adds a grey material for meshes without one.
   if (name == AI_DEFAULT_MATERIAL_NAME) return defaultMaterial(kNoMaterial, options_);
   if (name.empty()) name = fmt::format("material {}", number);
   Material material = defaultMaterial(name, options_);
-  const std::optional<Vec3> diffuse = colour(given, "$clr.diffuse");
-  has_colour_ = diffuse.has_value();
-  material.reflectance = settledReflectance(diffuse.value_or(material.reflectance), name, ignored_);
-  const Vec3 radiance = colour(given, "$clr.emissive").value_or(Vec3(0.0));
+  has_colour_ = given.diffuse.has_value();
+  material.reflectance =
+      settledReflectance(colourOr(given.diffuse, material.reflectance), name, ignored_);
+  const Vec3 radiance = colourOr(given.emissive, Vec3(0.0));
   if (options_.kd_is_srgb && isReflectance(material.reflectance)) {
     for (int band = 0; band < 3; ++band) {
       material.reflectance[band] = linearFromSrgb(material.reflectance[band]);
     }
   }
   material.emission = std::numbers::pi * radiance;
-  int two_sided = 0;
-  if (library_.getMaterialIntegerArray(&given, AI_MATKEY_TWOSIDED, &two_sided, nullptr) ==
-      AI_SUCCESS) {
-    material.two_sided = two_sided != 0;
-  }
-  float opacity = 1;
-  if (library_.getMaterialFloatArray(&given, AI_MATKEY_OPACITY, &opacity, nullptr) == AI_SUCCESS &&
-      opacity < 1) {
+  if (given.two_sided) material.two_sided = *given.two_sided != 0;
+  if (given.opacity.value_or(1) < 1) {
     ignored_.add(kSolidFeature, material.name, Severity::warning);
   }
-  if (library_.getMaterialTextureCount(&given, aiTextureType_OPACITY) > 0) {
-    ignored_.add(kMaskFeature, material.name, Severity::warning);
-  }
-  for (const aiTextureType bumps : {aiTextureType_NORMALS, aiTextureType_HEIGHT}) {
-    if (library_.getMaterialTextureCount(&given, bumps) == 0) continue;
+  if (given.opacity_textures > 0) ignored_.add(kMaskFeature, material.name, Severity::warning);
+  for (const std::uint32_t bumps : {given.normal_textures, given.height_textures}) {
+    if (bumps == 0) continue;
     ignored_.add("normal and bump maps are not used, material", material.name);
   }
   material.texture = texture(given, material.name);
-  const bool lacks_texture = options_.textures && material.texture == kNone &&
-                             library_.getMaterialTextureCount(&given, aiTextureType_DIFFUSE) > 0;
+  const bool lacks_texture =
+      options_.textures && material.texture == kNone && given.diffuse_textures > 0;
   if (lacks_texture && (material.reflectance == Vec3(0.0) || material.reflectance == Vec3(1.0))) {
     replaceStandIn(material, material.name, "colour", options_, ignored_);
   }
-  const bool glows = library_.getMaterialTextureCount(&given, aiTextureType_EMISSIVE) > 0;
+  const bool glows = given.emissive_textures > 0;
   if (glows && options_.textures) {
     ignored_.add(
         "emission textures of this format are not read; they EMIT NOTHING (--set NAME.radiance "
@@ -147,73 +132,67 @@ Index AssimpMaterialReader::added(const std::string& name, Material material) {
   return of_name.back();
 }
 
-Index AssimpMaterialReader::texture(const aiMaterial& given, const std::string& material) {
-  if (library_.getMaterialTextureCount(&given, aiTextureType_DIFFUSE) == 0) return kNone;
+Index AssimpMaterialReader::texture(const AssimpFileMaterial& given, const std::string& material) {
+  if (given.diffuse_textures == 0) return kNone;
   if (!options_.textures) {
     ignored_.add("textures are off; the colour alone counts, material", material);
     return kNone;
   }
-  aiString path;
-  aiTextureMapping mapping = aiTextureMapping_UV;
-  ai_real blend = 1;
-  aiTextureMapMode modes[2] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
-  if (library_.getMaterialTexture(&given, aiTextureType_DIFFUSE, 0, &path, &mapping, &set_, &blend,
-                                  nullptr, modes, nullptr) != AI_SUCCESS) {
-    return kNone;
-  }
-  const std::string name = path.C_Str();
+  if (!given.texture) return kNone;
+  const AssimpTexture& texture = *given.texture;
+  const std::string& name = texture.path;
   const auto unusable = [&](const std::string& problem) {
     noteUnusedTexture(name, problem, TextureUse::reflectance, "colour", material, ignored_);
     return kNone;
   };
-  if (mapping != aiTextureMapping_UV) return unusable("is not mapped by coordinates");
-  if (set_ >= AI_MAX_NUMBER_OF_TEXTURECOORDS) return unusable("names no set of coordinates");
-  const bool clamp = modes[0] == aiTextureMapMode_Clamp;
-  if (modes[0] != modes[1] || (!clamp && modes[0] != aiTextureMapMode_Wrap)) {
+  if (texture.by_coordinates == 0) return unusable("is not mapped by coordinates");
+  if (texture.set >= AI_MAX_NUMBER_OF_TEXTURECOORDS) return unusable("names no set of coordinates");
+  const bool clamp = texture.wrap[0] == aiTextureMapMode_Clamp;
+  if (texture.wrap[0] != texture.wrap[1] || (!clamp && texture.wrap[0] != aiTextureMapMode_Wrap)) {
     ignored_.add(fmt::format("texture wrapping that is mirrored or differs by axis is taken as {}, "
                              "material",
                              clamp ? "clamped" : "repeated"),
                  material, Severity::warning);
   }
-  if (blend != ai_real(1) || library_.getMaterialTextureCount(&given, aiTextureType_DIFFUSE) > 1) {
+  if (texture.blend != 1 || given.diffuse_textures > 1) {
     ignored_.add(
         "layers and blending of textures are not used, the first texture alone counts, material",
         material, Severity::warning);
   }
-  const LoadedTexture& found = loaded(name, !clamp);
+  const LoadedTexture& found = loaded(texture, !clamp);
   const std::string problem = found.problemAs(TextureUse::reflectance);
   return problem.empty() ? found.index : unusable(problem);
 }
 
-LoadedTexture& AssimpMaterialReader::loaded(const std::string& name, bool repeat) {
+LoadedTexture& AssimpMaterialReader::loaded(const AssimpTexture& texture, bool repeat) {
+  const std::string& name = texture.path;
   const auto [place, is_new] = texture_of_.try_emplace({name, repeat});
   if (is_new) {
-    TextureResult result = readImage(name);
+    TextureResult result = readImage(texture);
     if (result.has_alpha) ignored_.add("alpha is not used, texture", name);
     place->second = keepTexture(std::move(result), repeat, scene_);
   }
   return place->second;
 }
 
-TextureResult AssimpMaterialReader::readImage(const std::string& name) {
-  const aiTexture* embedded = file_.GetEmbeddedTexture(name.c_str());
-  if (embedded == nullptr) {
+TextureResult AssimpMaterialReader::readImage(const AssimpTexture& texture) {
+  if (!texture.embedded) {
     const std::string folder = std::filesystem::path(scene_.file).parent_path().string();
-    return readTexture(findImage(folder, name, ignored_), options_.max_image);
+    return readTexture(findImage(folder, texture.path, ignored_), options_.max_image);
   }
-  if (embedded->mHeight != 0) {
+  const AssimpImage& image = file_.images[*texture.embedded];
+  if (image.is_bare != 0) {
     TextureResult result;
     result.problem = "is embedded as bare texels, which are not read";
     return result;
   }
-  // Compressed, of mWidth bytes.
-  const auto* bytes = reinterpret_cast<const unsigned char*>(embedded->pcData);
-  return decodeTexture(name, {bytes, embedded->mWidth}, options_.max_image);
+  const auto* bytes = reinterpret_cast<const unsigned char*>(image.bytes.data());
+  return decodeTexture(texture.path, {bytes, image.bytes.size()}, options_.max_image);
 }
 
 }  // namespace
 
-std::vector<AssimpMaterial> readAssimpMaterials(const aiScene& file,
+std::vector<AssimpMaterial> readAssimpMaterials(const AssimpScene& file,
                                                 const std::map<unsigned, std::string>& names,
                                                 const SceneOptions& options, Scene& scene,
                                                 FeatureNotes& ignored) {

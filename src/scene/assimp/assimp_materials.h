@@ -6,16 +6,14 @@
 #include <vector>
 
 #include "radiosity/scene.h"
+#include "scene/assimp/assimp_scene.h"
 #include "scene/scene_builder.h"
-
-struct aiScene;
 
 namespace radiosity {
 
 /// A material of the file in the scene.
 struct AssimpMaterial {
   Index index;      ///< into Scene::materials
-  unsigned set;     ///< the set of texture coordinates for its texture
   bool has_colour;  ///< false: its reflectance is the default
 };
 
@@ -25,7 +23,7 @@ struct AssimpMaterial {
 /// one, are one if all properties that we use are equal. Unused properties go to `ignored`. Diffuse
 /// and emissive colours are read as in an MTL file; the reflectance is the colour's, also beside a
 /// texture. Errors: InputError naming the material.
-std::vector<AssimpMaterial> readAssimpMaterials(const aiScene& file,
+std::vector<AssimpMaterial> readAssimpMaterials(const AssimpScene& file,
                                                 const std::map<unsigned, std::string>& names,
                                                 const SceneOptions& options, Scene& scene,
                                                 FeatureNotes& ignored);

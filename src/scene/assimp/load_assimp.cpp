@@ -1,9 +1,6 @@
 // Reads Collada, FBX, 3DS, X3D, VRML, IFC, AC3D, LightWave, DXF, MilkShape and Blitz3D by Assimp.
 // Nodes are objects.
-#include <assimp/ColladaMetaData.h>
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
+#include <assimp/types.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,9 +19,9 @@
 #include "base/finite.h"
 #include "base/input_file.h"
 #include "scene/assimp/ac3d_document.h"
-#include "scene/assimp/assimp_files.h"
-#include "scene/assimp/assimp_library.h"
 #include "scene/assimp/assimp_materials.h"
+#include "scene/assimp/assimp_process.h"
+#include "scene/assimp/assimp_scene.h"
 #include "scene/assimp/collada_cameras.h"
 #include "scene/assimp/nesting_preflight.h"
 #include "scene/assimp/vrml_document.h"
@@ -51,28 +48,27 @@ class AssimpReader {
     if (extension == ".dae") collada_.emplace(checkXml(scene_.file), notes_);
     const bool is_vrml = extension == ".wrl";
     const bool is_ac3d = extension.starts_with(".ac");
-    AssimpFiles rewritten([this, is_ac3d](const std::string& path) {
-      return is_ac3d ? rewrittenAc3d(path) : rewrittenX3d(path);
-    });
-    const File file = is_vrml ? import(scene_.file + ".x3d", rewritten.io())
-                      : is_ac3d || extension == ".x3d" ? import(scene_.file, rewritten.io())
-                                                       : import(scene_.file, nullptr);
-    if (file == nullptr || file->mRootNode == nullptr) {
-      rewritten.rethrow();
-      const std::string why = library_.getErrorString();
+    AssimpRequest request{scene_.file, {}, !is_ac3d};
+    if (is_vrml) request.path += ".x3d";
+    if (is_ac3d) request.content = [this](const std::string& path) { return rewrittenAc3d(path); };
+    if (is_vrml || extension == ".x3d") {
+      request.content = [this](const std::string& path) { return rewrittenX3d(path); };
+    }
+    const auto [file, why] = readByAssimp(scene_.file, request);
+    if (!why.empty()) {
       if (why.find("mNumMeshes is 0") != std::string::npos) failWithoutFaces();
       fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb", onOneLine(why)));
     }
-    materials_ = readAssimpMaterials(*file, x3dMaterials(*file), options_, scene_, notes_);
-    scale_ = x3d_.metres_per_unit * metresPerUnit(*file);
-    addNodes(*file);
+    materials_ = readAssimpMaterials(file, x3dMaterials(file), options_, scene_, notes_);
+    scale_ = x3d_.metres_per_unit * file.centimetres.value_or(100) / 100;
+    addNodes(file);
     for (Camera viewpoint : x3d_.viewpoints) {
       const Vec3 forward = viewpoint.target - viewpoint.eye;
       viewpoint.eye *= scale_;
       addCamera(viewpoint, forward);
     }
     if (scene_.faceCount() == 0) failWithoutFaces();
-    if (file->mNumLights > 0) {
+    if (file.lights > 0) {
       scene_.notes.push_back({Severity::warning,
                               "lights without a surface are left out; make a "
                               "surface a lamp by --set NAME.radiance=10"});
@@ -99,55 +95,36 @@ class AssimpReader {
                      left_out.empty() ? "" : " (" + left_out.front().text + ")"));
   }
 
-  using File = std::unique_ptr<const aiScene, void (*)(const aiScene*)>;
-
-  File import(const std::string& path, aiFileIO* files) const;
   std::string rewrittenX3d(const std::string& path);
   std::string rewrittenAc3d(const std::string& path);
-  const X3dShape* x3dShape(const aiNode& node) const;
-  std::map<unsigned, std::string> x3dMaterials(const aiScene& file) const;
-  std::string objectName(const aiNode& node, const aiMesh& mesh) const;
-  static double metresPerUnit(const aiScene& file);
-  void addNodes(const aiScene& file);
-  std::vector<Vec3> coloursOf(const aiMesh& mesh, const std::string& object);
-  void addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place);
+  const X3dShape* x3dShape(const AssimpNode& node) const;
+  std::map<unsigned, std::string> x3dMaterials(const AssimpScene& file) const;
+  std::string objectName(const AssimpScene& file, const AssimpNode& node,
+                         const AssimpMesh& mesh) const;
+  void addNodes(const AssimpScene& file);
+  std::vector<Vec3> coloursOf(const AssimpMesh& mesh, const std::string& object);
+  void addMesh(const AssimpMesh& mesh, const std::string& object, const X3dShape* shape,
+               const aiMatrix4x4& place);
   Index twoSided(Index material);
   Index colouredByVertices(Index material);
   Index variant(std::map<Index, Index>& known, Index material, const char* mark,
                 const std::function<void(Material&)>& change);
-  void addCameras(const aiNode& node, const aiMatrix4x4& place);
+  void addCameras(const AssimpNode& node, const aiMatrix4x4& place);
   void addCamera(Camera camera, const Vec3& forward);
 
   const SceneOptions& options_;
-  const AssimpLibrary& library_ = assimpLibrary();
   Scene scene_;
   SceneBuilder builder_;
   std::vector<AssimpMaterial> materials_;  ///< by number in the file
   FeatureNotes notes_;
   double scale_ = 1;
-  std::multimap<std::string, const aiCamera*> camera_of_;  ///< by its node
-  std::optional<ColladaCameras> collada_;                  ///< replaces camera_of_
+  std::multimap<std::string, const AssimpCamera*> camera_of_;  ///< by its node
+  std::optional<ColladaCameras> collada_;                      ///< replaces camera_of_
   X3dExtras x3d_;
   std::vector<X3dShape> x3d_shapes_;
   std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
   std::map<Index, Index> coloured_;   ///< by material: the same for colours of vertices
 };
-
-AssimpReader::File AssimpReader::import(const std::string& path, aiFileIO* files) const {
-  const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(
-      library_.createPropertyStore(), library_.releasePropertyStore);
-  // We want the names that people gave, not ids.
-  library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
-  // Assimp must not add octahedra for nodes if a file has no meshes.
-  library_.setImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-  // Of AC3D, a mesh all of whose strips are slivers without an area has no vertices, at which the
-  // check of the whole file fails.
-  const bool is_ac3d = lowerExtension(path).starts_with(".ac");
-  const unsigned check = is_ac3d ? 0U : unsigned(aiProcess_ValidateDataStructure);
-  return {library_.importFileExWithProperties(path.c_str(), check | aiProcess_TransformUVCoords,
-                                              files, wishes.get()),
-          library_.releaseImport};
-}
 
 /// The rewritten X3D, or VRML as X3D. Of a file inside another (Inline) only the shapes count.
 std::string AssimpReader::rewrittenX3d(const std::string& path) {
@@ -176,88 +153,68 @@ std::string AssimpReader::rewrittenAc3d(const std::string& path) {
   return rewriteAc3d(content, notes_);
 }
 
-/// Calls visit(node, place) for all nodes, each before its children. (There is no recursion, since
-/// chains may have any length.)
-template <class Visit>
-void forNodes(const aiScene& file, const Visit& visit) {
-  std::vector<std::pair<const aiNode*, aiMatrix4x4>> open = {{file.mRootNode, aiMatrix4x4()}};
-  while (!open.empty()) {
-    const auto [node, above] = open.back();
-    open.pop_back();
-    const aiMatrix4x4 place = above * node->mTransformation;
-    visit(*node, place);
-    for (unsigned k = node->mNumChildren; k-- > 0;) open.emplace_back(node->mChildren[k], place);
-  }
-}
-
 /// Whether Assimp invented the name.
 bool isMadeUp(std::string_view name) {
   return name.empty() || name[0] == '<' || name.starts_with("$ColladaAutoName$");
 }
 
-std::string colladaId(const aiNode& node) {
-  aiString id;
-  const bool known = node.mMetaData != nullptr && node.mMetaData->Get(AI_METADATA_COLLADA_ID, id);
-  return known ? id.C_Str() : "";
-}
-
 /// The shape of X3D in a node, or null.
-const X3dShape* AssimpReader::x3dShape(const aiNode& node) const {
-  const std::optional<std::size_t> number = x3dShapeNumber(node.mName.C_Str());
+const X3dShape* AssimpReader::x3dShape(const AssimpNode& node) const {
+  const std::optional<std::size_t> number = x3dShapeNumber(node.name);
   return number && *number < x3d_shapes_.size() ? &x3d_shapes_[*number] : nullptr;
 }
 
 /// Names of the materials of X3D's meshes, by their numbers; nothing for other formats.
-std::map<unsigned, std::string> AssimpReader::x3dMaterials(const aiScene& file) const {
+std::map<unsigned, std::string> AssimpReader::x3dMaterials(const AssimpScene& file) const {
   std::map<unsigned, std::string> names;
   if (x3d_shapes_.empty()) return names;
-  forNodes(file, [&](const aiNode& node, const aiMatrix4x4&) {
+  for (const AssimpNode& node : file.nodes) {
     const X3dShape* const shape = x3dShape(node);
-    for (unsigned k = 0; k < node.mNumMeshes; ++k) {
-      names[file.mMeshes[node.mMeshes[k]]->mMaterialIndex] =
-          shape == nullptr ? "" : shape->material;
+    for (const std::uint32_t mesh : node.meshes) {
+      names[file.meshes[mesh].material] = shape == nullptr ? "" : shape->material;
     }
-  });
+  }
   return names;
 }
 
 /// The name of an object. If an IFC file has an object in several places, such as a window, Assimp
 /// names it after the kind of reference; then the node above has the name.
-std::string AssimpReader::objectName(const aiNode& node, const aiMesh& mesh) const {
+std::string AssimpReader::objectName(const AssimpScene& file, const AssimpNode& node,
+                                     const AssimpMesh& mesh) const {
   std::string of_file = std::filesystem::path(scene_.file).stem().string();
   if (const X3dShape* const shape = x3dShape(node)) {
     return shape->name.empty() ? of_file : shape->name;
   }
   constexpr std::string_view kReference = "IfcMappedItem";
-  const aiNode* named = &node;
-  while (named->mParent != nullptr && named->mName.C_Str() == kReference) named = named->mParent;
-  for (std::string name :
-       {std::string(named->mName.C_Str()), colladaId(*named), std::string(mesh.mName.C_Str())}) {
+  const AssimpNode* named = &node;
+  while (named != &file.nodes.front() && named->name == kReference) {
+    named = &file.nodes[named->parent];
+  }
+  for (const std::string& name : {named->name, named->collada_id, mesh.name}) {
     if (!isMadeUp(name)) return name;
   }
   return of_file;
 }
 
-/// The unit of a file in metres. FBX gives it in centimetres; Collada's is in its root node.
-double AssimpReader::metresPerUnit(const aiScene& file) {
-  double centimetres = 0;
-  float single = 0;
-  if (file.mMetaData == nullptr) return 1;
-  if (file.mMetaData->Get("UnitScaleFactor", centimetres)) return centimetres / 100;
-  if (file.mMetaData->Get("UnitScaleFactor", single)) return double(single) / 100;
-  return 1;
+aiMatrix4x4 matrixOf(const std::array<float, 16>& m) {
+  return {m[0], m[1], m[2],  m[3],  m[4],  m[5],  m[6],  m[7],
+          m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
 }
 
-void AssimpReader::addNodes(const aiScene& file) {
-  for (unsigned c = 0; c < file.mNumCameras; ++c) {
-    camera_of_.emplace(file.mCameras[c]->mName.C_Str(), file.mCameras[c]);
-  }
-  forNodes(file, [&](const aiNode& node, const aiMatrix4x4& place) {
-    for (unsigned k = 0; k < node.mNumMeshes; ++k) {
-      addMesh(*file.mMeshes[node.mMeshes[k]], node, place);
+aiVector3D vectorOf(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+void AssimpReader::addNodes(const AssimpScene& file) {
+  for (const AssimpCamera& camera : file.cameras) camera_of_.emplace(camera.node, &camera);
+  std::vector<aiMatrix4x4> places;
+  for (const AssimpNode& node : file.nodes) {
+    const aiMatrix4x4 above = places.empty() ? aiMatrix4x4() : places[node.parent];
+    const aiMatrix4x4& place = places.emplace_back(above * matrixOf(node.place));
+    for (const std::uint32_t m : node.meshes) {
+      const AssimpMesh& mesh = file.meshes[m];
+      addMesh(mesh, objectName(file, node, mesh), x3dShape(node), place);
     }
     addCameras(node, place);
-  });
+  }
 }
 
 Index AssimpReader::twoSided(Index material) {
@@ -286,9 +243,8 @@ Index AssimpReader::variant(std::map<Index, Index>& known, Index material, const
 }
 
 /// Factors of the reflectance, one a vertex; empty if there are none, or if they are not used.
-std::vector<Vec3> AssimpReader::coloursOf(const aiMesh& mesh, const std::string& object) {
-  const aiColor4D* const given = mesh.mColors[0];
-  if (given == nullptr) return {};
+std::vector<Vec3> AssimpReader::coloursOf(const AssimpMesh& mesh, const std::string& object) {
+  if (mesh.colours.empty()) return {};
   if (options_.vertex_colours == VertexColours::unused) {
     notes_.add(
         "colours of vertices do not change the reflectance (--vertex-colours srgb or linear uses "
@@ -297,8 +253,9 @@ std::vector<Vec3> AssimpReader::coloursOf(const aiMesh& mesh, const std::string&
     return {};
   }
   std::vector<Vec3> factors;
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const Vec3 colour(double(given[v].r), double(given[v].g), double(given[v].b));
+  for (std::size_t v = 0; v < mesh.colours.size(); ++v) {
+    const auto& given = mesh.colours[v];
+    const Vec3 colour{double(given[0]), double(given[1]), double(given[2])};
     const std::optional<Vec3> factor = factorOfColour(colour, options_.vertex_colours);
     if (!factor) {
       fail(
@@ -311,87 +268,88 @@ std::vector<Vec3> AssimpReader::coloursOf(const aiMesh& mesh, const std::string&
   return factors;
 }
 
-void AssimpReader::addMesh(const aiMesh& mesh, const aiNode& node, const aiMatrix4x4& place) {
-  const std::string object = objectName(node, mesh);
-  if (mesh.mNumVertices == 0) return notes_.add("shapes without corners are left out", object);
+void AssimpReader::addMesh(const AssimpMesh& mesh, const std::string& object, const X3dShape* shape,
+                           const aiMatrix4x4& place) {
+  if (mesh.vertices.empty()) return notes_.add("shapes without corners are left out", object);
   const std::size_t first = scene_.vertices.size();
-  if (first + mesh.mNumVertices >= kNone) fail("too many vertices; split the scene");
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const aiVector3D p = place * mesh.mVertices[v];
+  if (first + mesh.vertices.size() >= kNone) fail("too many vertices; split the scene");
+  for (const std::array<float, 3>& vertex : mesh.vertices) {
+    const aiVector3D p = place * vectorOf(vertex);
     scene_.vertices.push_back(scale_ * Vec3(double(p.x), double(p.y), double(p.z)));
     if (!isFinite(scene_.vertices.back())) {
       fail(fmt::format("object {}: a coordinate is not a finite number; export it again", object));
     }
   }
   const std::vector<Vec3> colours = coloursOf(mesh, object);
-  const X3dShape* const shape = x3dShape(node);
   const bool mirrors = place.Determinant() < 0;
   const bool clockwise = shape != nullptr && shape->clockwise;
-  Index material = materials_[mesh.mMaterialIndex].index;
-  if (!colours.empty() && !materials_[mesh.mMaterialIndex].has_colour) {
+  Index material = materials_[mesh.material].index;
+  if (!colours.empty() && !materials_[mesh.material].has_colour) {
     material = colouredByVertices(material);
   }
   if (shape != nullptr && shape->two_sided) material = twoSided(material);
   const Index surface = builder_.surface(object, material);
-  const aiVector3D* const texcoords = mesh.mTextureCoords[materials_[mesh.mMaterialIndex].set];
   std::vector<Index> corners;
   std::vector<Vec2> pairs;
   std::vector<Vec3> factors;
-  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-    const aiFace& face = mesh.mFaces[f];
-    if (face.mNumIndices < 3) {
+  const std::uint32_t* indices = mesh.indices.data();
+  for (std::size_t f = 0; f < mesh.corners.size(); indices += mesh.corners[f++]) {
+    const std::uint32_t count = mesh.corners[f];
+    if (count < 3) {
       notes_.add("lines and points have no area and are left out, in", object);
       continue;
     }
     corners.clear();
     pairs.clear();
     factors.clear();
-    for (unsigned k = 0; k < face.mNumIndices; ++k) {
-      const unsigned vertex = face.mIndices[mirrors != clockwise ? face.mNumIndices - 1 - k : k];
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::uint32_t vertex = indices[mirrors != clockwise ? count - 1 - k : k];
       corners.push_back(Index(first + vertex));
       if (!colours.empty()) factors.push_back(colours[vertex]);
-      if (texcoords == nullptr) continue;
+      if (mesh.texcoords.empty()) continue;
       // Assimp's origin is the bottom left corner.
-      pairs.emplace_back(double(texcoords[vertex].x), 1 - double(texcoords[vertex].y));
+      const auto& [right, up] = mesh.texcoords[vertex];
+      pairs.emplace_back(double(right), 1 - double(up));
       if (!std::isfinite(pairs.back().x) || !std::isfinite(pairs.back().y)) {
         fail(fmt::format("object {}: a texture coordinate is not a finite number; export it again",
                          object));
       }
     }
-    builder_.addFace(corners, pairs, surface, f, factors);
+    builder_.addFace(corners, pairs, surface, Index(f), factors);
   }
 }
 
 /// Adds the cameras of a node. Assimp's angle is the full horizontal one for all formats.
-void AssimpReader::addCameras(const aiNode& node, const aiMatrix4x4& place) {
-  const auto vectorOf = [](const aiVector3D& v) {
+void AssimpReader::addCameras(const AssimpNode& node, const aiMatrix4x4& place) {
+  const auto doubles = [](const aiVector3D& v) {
     return Vec3(double(v.x), double(v.y), double(v.z));
   };
   const aiMatrix3x3 turn(place);
-  const auto add = [&](Camera camera, const aiCamera& pose) {
-    const std::string id = colladaId(node);
-    camera.name = isMadeUp(node.mName.C_Str()) && !id.empty() ? id : node.mName.C_Str();
-    camera.eye = scale_ * vectorOf(place * pose.mPosition);
-    camera.up = vectorOf(turn * pose.mUp);
-    addCamera(std::move(camera), vectorOf(turn * pose.mLookAt));
+  const auto add = [&](Camera camera, const AssimpCamera& pose) {
+    const std::string& id = node.collada_id;
+    camera.name = isMadeUp(node.name) && !id.empty() ? id : node.name;
+    camera.eye = scale_ * doubles(place * vectorOf(pose.eye));
+    camera.up = doubles(turn * vectorOf(pose.up));
+    addCamera(std::move(camera), doubles(turn * vectorOf(pose.forward)));
   };
   if (collada_) {
-    aiCamera pose;
-    pose.mLookAt = {0, 0, -1};
-    for (const Camera& c : collada_->of(colladaId(node), node.mName.C_Str())) add(c, pose);
+    AssimpCamera pose;
+    pose.up = {0, 1, 0};
+    pose.forward = {0, 0, -1};
+    for (const Camera& c : collada_->of(node.collada_id, node.name)) add(c, pose);
     return;
   }
-  const auto [first, last] = camera_of_.equal_range(node.mName.C_Str());
+  const auto [first, last] = camera_of_.equal_range(node.name);
   for (auto it = first; it != last; ++it) {
-    const aiCamera& given = *it->second;
+    const AssimpCamera& given = *it->second;
     // Assimp loses their targets.
     if (lowerExtension(scene_.file) == ".3ds") {
-      notes_.add("cameras of 3DS files are not used", given.mName.C_Str(), Severity::warning);
+      notes_.add("cameras of 3DS files are not used", given.node, Severity::warning);
       continue;
     }
     Camera camera;
-    camera.aspect = std::max(0.0, double(given.mAspect));
-    const double width = std::tan(0.5 * double(given.mHorizontalFOV));
+    camera.aspect = std::max(0.0, double(given.aspect));
+    const double width = std::tan(0.5 * double(given.horizontal_angle));
     // If the file does not give the height of the picture, we take 4 : 3.
     camera.vertical_fov = 2 * std::atan(width / (camera.aspect > 0 ? camera.aspect : 4.0 / 3));
     add(std::move(camera), given);

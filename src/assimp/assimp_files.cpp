@@ -1,13 +1,11 @@
-#include "scene/assimp/assimp_files.h"
-
-#include <fmt/format.h>
+#include "assimp/assimp_files.h"
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <memory>
+#include <stdexcept>
 #include <utility>
-
-#include "radiosity/base.h"
 
 namespace radiosity {
 
@@ -55,17 +53,14 @@ AssimpFiles::AssimpFiles(Read read) : read_(std::move(read)) {
   io_.UserData = reinterpret_cast<aiUserData>(this);
 }
 
-void AssimpFiles::rethrow() const {
-  if (failed_) std::rethrow_exception(failed_);
-}
-
 /// Opens a file for Assimp. Exceptions must not pass through Assimp's C functions.
 aiFile* AssimpFiles::open(aiFileIO* io, const char* path, const char* /*mode*/) {
   AssimpFiles& self = *reinterpret_cast<AssimpFiles*>(io->UserData);
   try {
     constexpr int kMostAtOnce = 4;  // Assimp inspects a file before it reads it
     if (self.open_[path] >= kMostAtOnce) {
-      throw InputError(fmt::format("{}: is in itself (Inline); take the reference out", path));
+      throw std::runtime_error(std::string(path) +
+                               ": is in itself (Inline); take the reference out");
     }
     auto found = self.content_.find(path);
     if (found == self.content_.end()) found = self.content_.emplace(path, self.read_(path)).first;
@@ -76,8 +71,8 @@ aiFile* AssimpFiles::open(aiFileIO* io, const char* path, const char* /*mode*/) 
     ++self.open_[path];
     static_cast<void>(open.release());  // close() deletes both
     return file.release();
-  } catch (...) {
-    if (!self.failed_) self.failed_ = std::current_exception();
+  } catch (const std::exception& error) {
+    if (self.refusal_.empty()) self.refusal_ = error.what();
     return nullptr;
   }
 }

@@ -3,7 +3,6 @@
 
 #include <assimp/cfileio.h>
 
-#include <exception>
 #include <functional>
 #include <map>
 #include <string>
@@ -13,7 +12,7 @@ namespace radiosity {
 /// The files that Assimp opens; each path is read once.
 class AssimpFiles {
  public:
-  /// Returns the content of a path; exceptions are kept for rethrow().
+  /// Returns the content of a path; the words of exceptions are kept.
   using Read = std::function<std::string(const std::string& path)>;
 
   explicit AssimpFiles(Read read);
@@ -22,8 +21,8 @@ class AssimpFiles {
 
   /// For aiImportFileExWithProperties(); valid as long as this object lives.
   aiFileIO* io() { return &io_; }
-  /// Throws the first exception of reading, if there was one.
-  void rethrow() const;
+  /// The words of the first exception of reading; empty if there was none.
+  const std::string& refusal() const { return refusal_; }
 
  private:
   static aiFile* open(aiFileIO* io, const char* path, const char* mode);
@@ -33,7 +32,7 @@ class AssimpFiles {
   aiFileIO io_{};
   std::map<std::string, std::string> content_;  ///< by path
   std::map<std::string, int> open_;             ///< by path: how many times it is open now
-  std::exception_ptr failed_;
+  std::string refusal_;
 };
 
 }  // namespace radiosity
