@@ -1,11 +1,13 @@
 """VTK files as scenes, legacy and XML: cells of every kind, groups, and each broken file with its line."""
 
 import base64
+import lzma
 import re
 import struct
 import subprocess
 import sys
 import unittest
+import zlib
 
 from vtkmodules.vtkCommonCore import vtkIntArray
 from vtkmodules.vtkFiltersSources import vtkPlaneSource
@@ -29,6 +31,35 @@ class Vtk(CliTest):
 
     def says(self, line, content, name="a.vtk"):
         self.assertEqual(self.refuse("info", self.put(content, name)), f"radiosity: {name}{line}")
+
+    def test_arrays_unpack_to_no_more_than_their_piece_declares(self):
+        """A megabyte for three points, in a file of some kilobytes; ratios alone allow it."""
+        raw = bytes(1 << 20)
+        pack = {"vtkZLibDataCompressor": zlib.compress, "vtkLZMADataCompressor": lzma.compress,
+                # A run of zeros: a literal, then a match whose length is 4 + 15 + 255 + 255 ...; 5 literals end it.
+                "vtkLZ4DataCompressor": lambda raw: b"\x1f\0\1\0" + b"\xff" * ((len(raw) - 25) // 255)
+                + bytes([(len(raw) - 25) % 255]) + b"\x50" + bytes(5)}
+
+        def array(kind, name, count):
+            data = packed(count * {"Float32": 4, "Int32": 4, "UInt8": 1}[kind] if name != bomb else len(raw))
+            return f'<DataArray type="{kind}" Name="{name}" format="binary">{data}</DataArray>'
+
+        def packed(size):
+            body = pack[compressor](raw[:size]) if size > 99 or "LZ4" not in compressor else \
+                bytes([size << 4] if size < 15 else [0xf0, size - 15]) + raw[:size]
+            head = struct.pack("<4I", 1, size, 0, len(body))
+            return base64.b64encode(head).decode() + base64.b64encode(body).decode()
+        for compressor in pack:
+            for bomb, values in [("Points", 9), ("offsets", 1), ("connectivity", 0), ("types", 1)]:
+                with self.subTest(compressor=compressor, bomb=bomb):
+                    text = (f'<VTKFile type="UnstructuredGrid" byte_order="LittleEndian" compressor="{compressor}">'
+                            '<UnstructuredGrid><Piece NumberOfPoints="3" NumberOfCells="1">'
+                            f'<Points>{array("Float32", "Points", 9)}</Points><Cells>'
+                            f'{array("Int32", "connectivity", 0)}{array("Int32", "offsets", 1)}'
+                            f'{array("UInt8", "types", 1)}</Cells></Piece></UnstructuredGrid></VTKFile>')
+                    self.assertLess(len(text), 15000)
+                    self.says(f": DataArray {bomb}: it unpacks to more than the {values} values that its piece has; "
+                              "the file is damaged, export it again", text, "a.vtu")
 
     def test_strips_and_polygons_take_their_cell_data(self):
         self.put(LEGACY + "POLYDATA\n" + POINTS + "LINES 1 3\n2 0 1\nTRIANGLE_STRIPS 1 7\n6 0 1 2 3 4 5\n"
@@ -228,7 +259,8 @@ class Vtk(CliTest):
         for numbers, words in [((2**60, 1000, 96, 40), "it has too many blocks"),
                                ((1, 1000, 2**50, 40), "a block's size is wrong"),
                                ((1, 1000, 96, 2**50), "a block's size is wrong"),
-                               ((1, 1000, 97, 12), "a block cannot be unpacked")]:
+                               ((1, 1000, 97, 12), "it unpacks to more than the 12 values that its piece has"),
+                               ((1, 1000, 95, 12), "a block cannot be unpacked")]:
             head = base64.b64encode(struct.pack("<4Q", *numbers)).decode()
             cases.append((packed.replace(first, head + first[len(head):]), words))
         for content, words in cases:

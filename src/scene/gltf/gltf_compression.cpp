@@ -31,9 +31,10 @@ using Bytes = std::vector<unsigned char>;
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
-/// The most that a byte is unpacked to, above what any encoder reaches: a damaged size is refused
-/// before memory is taken for it.
-constexpr std::size_t kMostBytesOfOne = 4096;
+/// The most that a byte is unpacked to: 2 bits say that 16 bytes do not change
+/// (EXT_meshopt_compression, "Attributes"); of indices it is less. A damaged size is refused before
+/// memory is taken for it.
+constexpr std::size_t kMostBytesOfOne = 64;
 /// The most that a binary glTF file holds.
 constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 

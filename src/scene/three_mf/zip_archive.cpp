@@ -29,6 +29,9 @@ constexpr std::uint64_t kMostUnpacked = std::uint64_t{1} << 30U;
 /// The most bytes to which one deflated byte can unpack (zlib's manual, "Maximum expansion
 /// factor").
 constexpr std::uint64_t kMostRatio = 1032;
+/// Larger files are refused at a lower ratio, which no list of coordinates reaches.
+constexpr std::uint64_t kFewUnpacked = std::uint64_t{1} << 26U;
+constexpr std::uint64_t kMostRatioOfMany = 100;
 
 std::string plainName(std::string_view name) {
   if (name.starts_with('/')) name.remove_prefix(1);
@@ -158,6 +161,10 @@ void ZipArchive::require(const Entry& entry) const {
     fail(fmt::format("{}: its size is wrong; the archive is damaged, export it again", entry.name));
   }
   if (entry.size > kMostUnpacked) failForSize();
+  if (entry.size > kFewUnpacked && entry.size / kMostRatioOfMany > entry.packed) {
+    fail(fmt::format("{}: unpacks from {} to {} bytes, as no scene does; export it again",
+                     entry.name, entry.packed, entry.size));
+  }
 }
 
 /// The packed bytes of a file. They follow a header, which repeats the name and has extra fields.

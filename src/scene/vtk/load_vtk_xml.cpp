@@ -1,12 +1,14 @@
 // Reads XML VTK files (Kitware, "VTK File Formats"): .vtp PolyData and .vtu UnstructuredGrid.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
 
 #include "base/input_file.h"
+#include "base/lower_case.h"
 #include "base/parse.h"
 #include "scene/readers.h"
 #include "scene/vtk/vtk_arrays.h"
@@ -53,13 +55,15 @@ class VtkXmlReader {
 
   void parse();
   void header(const pugi::xml_node& root);
-  VtkArray array(const pugi::xml_node& node) const;
+  VtkArray array(const pugi::xml_node& node, std::size_t most) const;
+  std::size_t declared(const pugi::xml_node& piece, const std::string& what) const;
+  std::size_t cellsOf(const pugi::xml_node& piece) const;
   pugi::xml_node named(const pugi::xml_node& parent, const char* name) const;
   void points(const pugi::xml_node& piece, VtkCells& cells);
   bool mayBeGroups(const pugi::xml_node& node) const;
   std::string groupArray(const pugi::xml_node& data) const;
   void groups(const pugi::xml_node& piece, VtkCells& cells) const;
-  void append(const pugi::xml_node& lists, VtkCells& cells) const;
+  void append(const pugi::xml_node& piece, const char* kind, VtkCells& cells) const;
   VtkCells polygons(const pugi::xml_node& piece);
   VtkCells grid(const pugi::xml_node& piece);
 
@@ -106,9 +110,13 @@ void VtkXmlReader::header(const pugi::xml_node& root) {
   file_.appended_is_raw = std::string_view(appended.attribute("encoding").value()) == "raw";
 }
 
-VtkArray VtkXmlReader::array(const pugi::xml_node& node) const {
-  VtkArray array{node.attribute("Name").value(), node.attribute("type").value(),
-                 node.attribute("format").as_string("ascii"), node.child_value(), 0};
+VtkArray VtkXmlReader::array(const pugi::xml_node& node, std::size_t most) const {
+  VtkArray array{node.attribute("Name").value(),
+                 node.attribute("type").value(),
+                 node.attribute("format").as_string("ascii"),
+                 node.child_value(),
+                 0,
+                 most};
   if (array.format == "appended") {
     const auto offset = parseInteger(node.attribute("offset").value());
     if (!offset || *offset < 0) fail(fmt::format("DataArray {} has no offset", array.name));
@@ -120,6 +128,26 @@ VtkArray VtkXmlReader::array(const pugi::xml_node& node) const {
   return array;
 }
 
+/// The number of points or cells that a piece declares; 0 if it says nothing.
+std::size_t VtkXmlReader::declared(const pugi::xml_node& piece, const std::string& what) const {
+  const std::string key = "NumberOf" + what;
+  const std::string text = piece.attribute(key.c_str()).value();
+  const auto count = text.empty() ? 0 : parseInteger(text);
+  constexpr long long kMost = 1LL << 32;
+  if (!count || *count < 0 || *count > kMost) {
+    fail(fmt::format("{} `{}` is no number of {}; export it again", key, text, lowerCase(what)));
+  }
+  return std::size_t(*count);
+}
+
+std::size_t VtkXmlReader::cellsOf(const pugi::xml_node& piece) const {
+  std::size_t sum = 0;
+  for (const char* kind : {"Cells", "Verts", "Lines", "Polys", "Strips"}) {
+    sum += declared(piece, kind);
+  }
+  return sum;
+}
+
 pugi::xml_node VtkXmlReader::named(const pugi::xml_node& parent, const char* name) const {
   const pugi::xml_node found = parent.find_child_by_attribute("DataArray", "Name", name);
   if (!found) fail(fmt::format("{} has no DataArray {}; export it again", parent.name(), name));
@@ -129,20 +157,26 @@ pugi::xml_node VtkXmlReader::named(const pugi::xml_node& parent, const char* nam
 void VtkXmlReader::points(const pugi::xml_node& piece, VtkCells& cells) {
   const pugi::xml_node node = piece.child("Points").child("DataArray");
   if (!node) return;  // an empty piece
-  const std::vector<double> numbers = vtkNumbers(file_, array(node));
+  const std::vector<double> numbers = vtkNumbers(file_, array(node, 3 * declared(piece, "Points")));
   if (numbers.size() % 3 != 0) fail("its points have no 3 coordinates each; export it again");
   for (std::size_t k = 0; k < numbers.size(); k += 3) {
     cells.points.push_back(faces_.addVertex({numbers[k], numbers[k + 1], numbers[k + 2]}));
   }
 }
 
-void VtkXmlReader::append(const pugi::xml_node& lists, VtkCells& cells) const {
-  const std::vector<long long> all = vtkIntegers(file_, array(named(lists, "connectivity")));
+/// Reads lists of corners: their ends first, which say how many corners there are.
+void VtkXmlReader::append(const pugi::xml_node& piece, const char* kind, VtkCells& cells) const {
+  const pugi::xml_node lists = piece.child(kind);
+  const std::vector<long long> ends =
+      vtkIntegers(file_, array(named(lists, "offsets"), declared(piece, kind)));
+  const long long last = ends.empty() ? 0 : std::max(0LL, *std::ranges::max_element(ends));
+  const std::vector<long long> all =
+      vtkIntegers(file_, array(named(lists, "connectivity"), std::size_t(last)));
   const auto shift = static_cast<long long>(cells.connectivity.size());
   cells.connectivity.insert(cells.connectivity.end(), all.begin(), all.end());
-  for (const long long end : vtkIntegers(file_, array(named(lists, "offsets")))) {
+  for (const long long end : ends) {
     if (end < 0 || end > static_cast<long long>(all.size())) {
-      fail(fmt::format("{}: offset {} goes beyond its points; export it again", lists.name(), end));
+      fail(fmt::format("{}: offset {} goes beyond its points; export it again", kind, end));
     }
     cells.ends.push_back(shift + end);
   }
@@ -162,7 +196,7 @@ std::string VtkXmlReader::groupArray(const pugi::xml_node& data) const {
   for (const pugi::xml_node piece : data.children("Piece")) {
     for (const pugi::xml_node node : piece.child("CellData").children()) {
       if (!mayBeGroups(node)) continue;
-      const VtkArray found = array(node);
+      const VtkArray found = array(node, cellsOf(piece));
       const auto [place, is_new] = values.try_emplace(found.name);
       if (is_new) arrays.push_back(found);
       if (found.type == "String") continue;
@@ -186,7 +220,7 @@ void VtkXmlReader::groups(const pugi::xml_node& piece, VtkCells& cells) const {
   const pugi::xml_node node =
       piece.child("CellData").find_child_by_attribute("Name", group_array_.c_str());
   if (group_array_.empty() || !node) return;
-  const VtkArray data = array(node);
+  const VtkArray data = array(node, cellsOf(piece));
   if (data.type == "String") {
     cells.groups = vtkWords(file_, data);
     for (std::string& group : cells.groups) {
@@ -212,8 +246,7 @@ VtkCells VtkXmlReader::polygons(const pugi::xml_node& piece) {
   VtkCells cells;
   points(piece, cells);
   for (const auto& [name, type] : kKinds) {
-    const pugi::xml_node lists = piece.child(name);
-    if (lists.child("DataArray")) append(lists, cells);
+    if (piece.child(name).child("DataArray")) append(piece, name, cells);
     cells.types.resize(cells.ends.size(), type);
   }
   groups(piece, cells);
@@ -225,8 +258,8 @@ VtkCells VtkXmlReader::grid(const pugi::xml_node& piece) {
   points(piece, cells);
   const pugi::xml_node lists = piece.child("Cells");
   if (lists.child("DataArray")) {
-    append(lists, cells);
-    cells.types = vtkIntegers(file_, array(named(lists, "types")));
+    append(piece, "Cells", cells);
+    cells.types = vtkIntegers(file_, array(named(lists, "types"), cellsOf(piece)));
   }
   groups(piece, cells);
   return cells;

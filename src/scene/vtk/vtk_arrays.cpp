@@ -5,6 +5,7 @@
 #include <lzma.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -153,6 +154,12 @@ bool unpackBlock(VtkPacking packing, const std::string& packed, std::span<char> 
   return uncompress(out, &length, in, packed.size()) == Z_OK && length == block.size();
 }
 
+/// The bytes of the values that the file declares.
+std::size_t mostBytes(const VtkFile& file, const VtkArray& array) {
+  const std::size_t size = sizeOf(arrayType(file, array));
+  return size * std::min(array.most, std::numeric_limits<std::size_t>::max() / size);
+}
+
 /// Unpacks blocks, which are packed separately. The header has their number, their size, the size
 /// of the last (0: like the others), then the packed size of each.
 std::string unpacked(const VtkFile& file, const VtkArray& array, ByteSource& source) {
@@ -162,12 +169,19 @@ std::string unpacked(const VtkFile& file, const VtkArray& array, ByteSource& sou
     fail(file, array, "it has too many blocks; export the file again");
   const std::vector<std::size_t> sizes = headerOf(file, source, blocks);
   source.endRun();
+  const std::size_t most = mostBytes(file, array);
   std::string all;
   for (std::size_t k = 0; k < blocks; ++k) {
     const bool is_short = k + 1 == blocks && head[2] > 0;
     const std::size_t size = is_short ? head[2] : head[1];
     if (sizes[k] > source.room() || size / mostRatio(file.packing) > sizes[k]) {
       fail(file, array, "a block's size is wrong; the file is damaged, export it again");
+    }
+    if (size > most - all.size()) {
+      fail(file, array,
+           fmt::format("it unpacks to more than the {} values that its piece has; the file is "
+                       "damaged, export it again",
+                       array.most));
     }
     const std::string packed = source.take(sizes[k]);
     const std::size_t begin = all.size();
@@ -237,6 +251,8 @@ std::vector<long long> vtkIntegers(const VtkFile& file, const VtkArray& array) {
 std::vector<std::string> vtkWords(const VtkFile& file, const VtkArray& array) {
   VtkArray characters = array;
   characters.type = "Int8";
+  constexpr std::size_t kLongestWord = 4096;
+  characters.most *= kLongestWord;
   std::vector<std::string> words(1);
   for (const long long code : vtkIntegers(file, characters)) {
     if (code == 0) {

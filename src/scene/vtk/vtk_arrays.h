@@ -34,6 +34,7 @@ struct VtkArray {
   std::string format;  ///< ascii, binary or appended
   std::string_view text;
   std::size_t offset = 0;  ///< into VtkFile::appended
+  std::size_t most = 0;    ///< values to which it may unpack, as the file declares them
 };
 
 /// The numbers of an array of coordinates, all finite.
