@@ -480,9 +480,9 @@ inline auto members(const PatchClusters& s) {
 }
 inline auto members(const PatchMesh& s) {
   // Enclosures are not kept in the file: they are found anew.
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, enclosures, q] = s;
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, enclosures, r] = s;
   static_cast<void>(enclosures);
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
 }
 inline auto members(const SurfaceAreas& s) {
   const auto& [a, b, c, d, e, f] = s;
