@@ -42,7 +42,7 @@ class RayScene {
   std::vector<Index> order_;
   std::vector<Index> position_;  ///< of each unknown in it
   std::vector<double> area_;
-  std::vector<std::uint64_t> seed_;  ///< by position
+  std::vector<std::uint64_t> seed_;    ///< by position
   std::optional<RayWindows> windows_;  ///< of an open scene
 };
 

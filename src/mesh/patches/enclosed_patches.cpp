@@ -52,7 +52,7 @@ struct Wing {
   double angle;
   Index up;
   Index down;
-  bool back_is_up() const { return up % 2 != 0; }
+  bool backIsUp() const { return up % 2 != 0; }
 };
 
 /// The front patches of a mesh as polygons. Polygons that others stand on or pass through are not
@@ -242,7 +242,7 @@ class SpaceSearch {
       while (to < wings.size() && wings[to].angle - wings[to - 1].angle < kSameDirection) ++to;
       std::stable_sort(
           wings.begin() + std::ptrdiff_t(from), wings.begin() + std::ptrdiff_t(to),
-          [](const Wing& a, const Wing& b) { return a.back_is_up() > b.back_is_up(); });
+          [](const Wing& a, const Wing& b) { return a.backIsUp() > b.back_is_up(); });
       from = to;
     }
   }
