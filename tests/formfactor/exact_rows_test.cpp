@@ -149,7 +149,10 @@ TEST_P(ExactRows, KeepClosureAndReciprocity) {
   const std::vector<double> sums = f.matrix.rowSums();
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (!(mesh.area[i] > 0)) continue;
-    EXPECT_NEAR(f.fronts[i] + f.backs[i] + f.sky[i], 1, 1e-12);
+    // What is left is sky; where closure has left less than nothing, sky is 0. Rows are closed to
+    // 1e-9, then rounded as stored: single precision, 6e-8 of each value.
+    const double accounts = f.fronts[i] + f.backs[i] + f.sky[i];
+    EXPECT_NEAR(accounts, 1, f.sky[i] > 0 ? 1e-12 : 1e-7);
     EXPECT_NEAR(sums[i], f.fronts[i], 1e-7);  // single precision: 6e-8 of each value
     if (f.report.closed) {
       EXPECT_NEAR(sums[i] + f.backs[i], 1, 1e-7);

@@ -113,10 +113,10 @@ def test_a_room_that_faces_outward_is_said_and_turned(tmp_path):
         without = rad.load(path, without=["ceil*"])
     with pytest.warns(UserWarning, match="the closed shell floor, ceiling, wall faces "
                                          "outward, .* turn it over, flip: all$"):
-        assert rad.form_factors(rad.mesh(scene, patches=6)).csr().nnz == 0
+        assert rad.form_factors(rad.mesh(scene, patches=6)).csr.nnz == 0
     assert any(note["text"].startswith("all (") and "turned over" in note["text"] for note in turned.notes)
     factors = rad.form_factors(rad.mesh(turned, patches=6), tolerance=1e-6)
-    assert factors.csr()[0, 1] == pytest.approx(.199825, abs=2e-6)  # opposite faces of a cube
+    assert factors.csr[0, 1] == pytest.approx(.199825, abs=2e-6)  # opposite faces of a cube
     assert without.surface_names == ["floor", "wall"]
     with pytest.raises(rad.InputError, match="^without: flor: no surface, material or object is called flor"):
         rad.load(path, without="flor")
