@@ -25,6 +25,8 @@ class ThreadOrder {
   /// A body, from its begin to its end.
   class Body {
    public:
+    Body(const Body&) = delete;
+    Body& operator=(const Body&) = delete;
 #if defined(__SANITIZE_THREAD__)
     explicit Body(const ThreadOrder& order) : order_(order) { __tsan_acquire(&order_.place_); }
     ~Body() { __tsan_release(&order_.place_); }
@@ -35,9 +37,6 @@ class ThreadOrder {
     explicit Body(const ThreadOrder& /*order*/) {}
     ~Body() {}  // NOLINT(modernize-use-equals-default)
 #endif
-   public:
-    Body(const Body&) = delete;
-    Body& operator=(const Body&) = delete;
   };
 
 #if defined(__SANITIZE_THREAD__)

@@ -11,7 +11,7 @@ namespace radiosity {
 namespace {
 
 FuzzReader fileReader(const char* name, const char* ending,
-                      std::function<void(const std::string& path)> read) {
+                      const std::function<void(const std::string& path)>& read) {
   return {name, [ending, read](std::string_view bytes) { withFile(bytes, ending, read); }};
 }
 

@@ -324,6 +324,7 @@ TEST(WeldPoints, AGroupIsOneOrSeveralWhateverItsOrder) {
   const double step = 0.9e-3;
   const auto count = [&](const std::vector<double>& at) {
     std::vector<Vec3> places;
+    places.reserve(at.size());
     for (const double x : at) places.emplace_back(x * step, 1, 2);
     WeldedPoints points;
     const std::vector<Index> point =
