@@ -105,7 +105,7 @@ struct Solution {
 };
 
 /// The largest share of the power coming in by which an account may be off that is made with these
-/// form factors: what they state as their error, and 1% at least; 5% for hemicubes, which state
+/// form factors: what they state as their error, and 1% at least; 10% for hemicubes, which state
 /// none. No limit for matrices from elsewhere: areas may be missing, and notes say what is odd.
 double mostImbalance(const FormFactors& factors);
 /// What a user can do about more than that, by the options of the program.

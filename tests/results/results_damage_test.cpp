@@ -219,8 +219,9 @@ bool mayBe(const std::string& path, const std::string& damage) {
   if (damage.find("row") != std::string::npos && endsWithOneOf(path, kAnyLength)) return true;
   constexpr const char* kOrNone[] = {"/texcoords", "/colours", "/form_factors/error",
                                      "/form_factors/backs_by_surface"};
-  // Points that no element names are of no consequence.
-  if (damage == "one row more" && path.ends_with("/points")) return true;
+  // Points that no element or face names are of no consequence.
+  const bool of_points = path.ends_with("/points") || path == "/scene/vertices";
+  if (damage == "one row more" && of_points) return true;
   return damage == "no rows" && endsWithOneOf(path, kOrNone);
 }
 
