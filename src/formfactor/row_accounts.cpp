@@ -72,6 +72,7 @@ std::vector<std::string> namesOfSolids(const PatchMesh& mesh) {
     for (const Index p : closed.polygons) surfaces.insert(mesh.polygons.surface[p]);
   }
   std::vector<std::string> names;
+  names.reserve(surfaces.size());
   for (const Index s : surfaces) names.push_back(mesh.surface_names[s]);
   return names;
 }

@@ -391,7 +391,7 @@ TEST_F(ResultsFile, NamesElementsThatAnotherProgramChanged) {
   Results odd = good;
   odd.elements->indirect.values[7] = NAN;
   write(odd);
-  expectInputError("/elements/indirect/values holds a value that is not finite");
+  expectInputError("/elements/indirect/values holds nan at 2");
   Results alone = good;
   alone.solution.reset();
   alone.solution_key.clear();

@@ -242,7 +242,7 @@ class SpaceSearch {
       while (to < wings.size() && wings[to].angle - wings[to - 1].angle < kSameDirection) ++to;
       std::stable_sort(
           wings.begin() + std::ptrdiff_t(from), wings.begin() + std::ptrdiff_t(to),
-          [](const Wing& a, const Wing& b) { return a.backIsUp() > b.back_is_up(); });
+          [](const Wing& a, const Wing& b) { return a.backIsUp() > b.backIsUp(); });
       from = to;
     }
   }

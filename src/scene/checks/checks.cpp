@@ -168,6 +168,7 @@ std::vector<std::string> SceneChecks::surfacesOf(const ConnectedPart& part) cons
   std::set<Index> surfaces;
   for (const Index f : part.faces) surfaces.insert(scene_.face_surface[f]);
   std::vector<std::string> names;
+  names.reserve(surfaces.size());
   for (const Index s : surfaces) names.push_back(scene_.surfaces[s].name);
   return names;
 }

@@ -54,6 +54,7 @@ std::vector<Note> LostGaps::notes(const Scene& scene, double coincidence) const 
   Box3 box;
   for (const Index v : scene.corners) box.add(scene.vertices[v]);
   std::vector<Note> out;
+  out.reserve(least_.size());
   for (const auto& [pair, gap] : least_) {
     out.push_back(
         {Severity::warning,
