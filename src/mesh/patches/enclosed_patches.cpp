@@ -240,9 +240,8 @@ class SpaceSearch {
     for (std::size_t from = 0; from < wings.size();) {
       std::size_t to = from + 1;
       while (to < wings.size() && wings[to].angle - wings[to - 1].angle < kSameDirection) ++to;
-      std::stable_sort(
-          wings.begin() + std::ptrdiff_t(from), wings.begin() + std::ptrdiff_t(to),
-          [](const Wing& a, const Wing& b) { return a.backIsUp() > b.backIsUp(); });
+      std::stable_sort(wings.begin() + std::ptrdiff_t(from), wings.begin() + std::ptrdiff_t(to),
+                       [](const Wing& a, const Wing& b) { return a.backIsUp() > b.backIsUp(); });
       from = to;
     }
   }
