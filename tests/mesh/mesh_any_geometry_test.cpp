@@ -2,6 +2,7 @@
 // Every scene is tried as it is, turned by one radian about a skew axis, and a million units away.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
