@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <string>
@@ -22,6 +23,16 @@ ClosedRows::ClosedRows(const PatchMesh& mesh, bool of_unknowns)
 }
 
 bool ClosedRows::any() const { return std::ranges::count(state_, kClosed) > 0; }
+
+void ClosedRows::balance(FormFactors& result) const {
+  double& largest = result.report.largest_row_error;
+  for (std::size_t i = 0; i < result.fronts.size(); ++i) {
+    if (result.fronts[i] + result.backs[i] + result.sky[i] == 0) continue;
+    const double rest = 1 - result.fronts[i] - result.backs[i];
+    result.sky[i] = closed(i) ? 0.0 : std::max(0.0, rest);
+    largest = std::max(largest, std::abs(rest - result.sky[i]));
+  }
+}
 
 void ClosedRows::report(const PatchMesh& mesh, FormFactorReport& report) const {
   report.closed = report.empty_rows < state_.size() &&

@@ -25,6 +25,9 @@ class ClosedRows {
     if (closed(row) && missing > most) state_[row] = kRefuted;
     return closed(row);
   }
+  /// Sets the sky to the rest of each open row that is not empty. What a closed one misses, or any
+  /// has beyond 1, is its error: FormFactorReport::largest_row_error is that at least.
+  void balance(FormFactors& result) const;
   /// Sets FormFactorReport::closed, and warns of rows that keeps() has opened.
   void report(const PatchMesh& mesh, FormFactorReport& report) const;
 

@@ -68,6 +68,71 @@ TEST(ClosedRows, PlatesKeepTheSkyOfTheGapBetweenThem) {
   }
 }
 
+/// Whether all rows sum to 1 with backs and sky, none of them below 0. Values are in single
+/// precision, and rows have a few.
+void expectWholeRows(const FormFactors& f) {
+  const std::vector<double> sums = f.matrix.rowSums();
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    EXPECT_GE(f.sky[i], 0) << i;
+    EXPECT_NEAR(sums[i] + f.backs[i] + f.sky[i], 1, 2e-7) << i;
+  }
+}
+
+// The eye in the middle of a plate sees the other one alone. What better values leave is sky.
+TEST(ClosedRows, WhatCorrectedPairsLeaveIsSkyThoughAnEyeSawNone) {
+  for (const double gap : {3e-3, 3e-4}) {
+    SceneBuilder builder;
+    builder.level(builder.surface("low"), 0, 0, 1, 1, 0);
+    builder.level(builder.surface("high"), 0, 0, 1, 1, gap, false);
+    for (const Scene& scene : placed(builder.scene())) {
+      const PatchMesh mesh = test::meshOf(scene, 1, true);
+      for (const auto& [exact, near] : {std::pair(true, false), {false, true}, {true, true}}) {
+        FormFactorOptions options = by(FormFactorMethod::hemicube, 0);
+        options.near_exact = near;
+        if (exact) options.exact_rows = {0};
+        const FormFactors f = test::computed(mesh, options);
+        expectWholeRows(f);
+        // Pairs with nothing in between are good to 1e-5 of their value.
+        for (const int i : {0, 1}) EXPECT_NEAR(f.sky[i], 1 - facingSquares(gap), 1e-5) << gap;
+      }
+    }
+  }
+}
+
+// All of the small plate's light falls on the large one, by whose eye the same is true.
+TEST(ClosedRows, MergedPairsLeaveTheLargerPlateItsSky) {
+  SceneBuilder builder;
+  builder.level(builder.surface("small"), 0, 0, 1, 1, 0);
+  builder.level(builder.surface("large"), -.25, 0, 1.25, 1, 3e-4, false);
+  FormFactorOptions options = by(FormFactorMethod::hemicube, 0);
+  options.symmetrize = true;
+  for (const Scene& scene : placed(builder.scene())) {
+    const FormFactors f = test::computed(test::meshOf(scene, 1, true), options);
+    expectWholeRows(f);
+    // The gap takes about its share of the rim; no eye sees it.
+    EXPECT_NEAR(f.matrix.at(0, 1), 1, 1e-3);
+    EXPECT_NEAR(f.sky[1], 1.0 / 3, 1e-3);
+  }
+}
+
+// A flat closed box: its eyes see next to nothing but the near face opposite.
+TEST(ClosedRows, CorrectedPairsOfAClosedRoomLeaveNoSky) {
+  SceneBuilder builder;
+  builder.box(builder.surface("room"), {0, 0, 0}, {1, 1, 3e-4}, false);
+  for (const Scene& scene : placed(builder.scene())) {
+    const PatchMesh mesh = test::meshOf(scene, 1, true);
+    for (const bool near : {true, false}) {
+      FormFactorOptions options = by(FormFactorMethod::hemicube, 0);
+      options.near_exact = near;
+      if (!near) options.exact_rows = {0};
+      const FormFactors f = test::computed(mesh, options);
+      EXPECT_TRUE(f.report.closed);
+      expectWholeRows(f);
+      for (const double sky : f.sky) EXPECT_EQ(sky, 0);
+    }
+  }
+}
+
 // All that enters a room by a slit falls on the room: by reciprocity all that leaves is the slit's
 // area, whatever the room looks like.
 TEST(ClosedRows, ARoomWithASlitLosesTheSlitsArea) {

@@ -41,9 +41,10 @@ SampledRow lookFrom(std::size_t patch, std::size_t patches, const HemicubeScene&
   SampledRow sampled;
   for (int look = 0; look < 2; ++look) {
     const double start = processorSeconds();
-    row.pack(scene.rows.look(patch, hemicube, hidden), patches);
+    const HemicubeView& view = scene.rows.look(patch, hemicube, hidden);
+    row.pack(view, patches);
     sampled.entries = row.columns.size();
-    if (scene.near_pairs) scene.near_pairs->correct(patch, row);
+    if (scene.near_pairs) scene.near_pairs->correct(patch, row, view.backs + view.sky, false);
     sampled.seconds = processorSeconds() - start;
   }
   sampled.hemicube_bytes = hemicube.bytes();
@@ -93,7 +94,7 @@ std::optional<Sample> sampleByGpu(const std::vector<Index>& patches, std::size_t
     PackedRow row;
     row.pack(view, n);
     entries += row.columns.size();
-    if (scene.near_pairs) scene.near_pairs->correct(patch, row);
+    if (scene.near_pairs) scene.near_pairs->correct(patch, row, view.backs + view.sky, false);
   };
   const auto gaveUp = [&](Progress& watched) {
     entries = 0;

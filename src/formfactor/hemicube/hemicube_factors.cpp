@@ -56,26 +56,28 @@ struct Rows {
   std::vector<std::uint8_t> made;  ///< by row; 1 also for empty ones
 };
 
-/// Stores row i as it was seen, but without `leaks`, a part of its sky, or with its near entries
-/// corrected.
-void storeRow(std::size_t i, const HemicubeView& view, double leaks, const NearPairs* near_pairs,
+/// Stores row i as it was seen, or with its near entries corrected. The sky of a closed one is
+/// leaks: it goes without.
+void storeRow(std::size_t i, const HemicubeView& view, bool closed, const NearPairs* near_pairs,
               PackedRow& row, FormFactors& result, std::vector<SeenBack>& seen_backs,
               HemicubeRowCounts& counts) {
   const std::size_t n = result.fronts.size();
   row.pack(view, n);
-  double rest = 1 / (1 - leaks);
+  const double sky = closed ? 0.0 : view.sky;
+  double rest = closed ? 1 / (1 - view.sky) : 1.0;
   for (double& value : row.values) value *= rest;
   result.fronts[i] = rest * view.fronts;
+  result.sky[i] = sky;
   if (near_pairs != nullptr) {
-    const NearPairs::Outcome outcome = near_pairs->correct(i, row);
-    counts.near_pairs += outcome.replaced;
-    counts.capped += outcome.capped;
-    rest *= outcome.rest;
+    const auto [replaced, scaled] = near_pairs->correct(i, row, rest * view.backs + sky, closed);
+    counts.near_pairs += replaced;
+    counts.capped += scaled.capped ? 1 : 0;
+    rest *= scaled.rest;
     result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
+    result.sky[i] = scaled.rest * sky + scaled.sky;
   }
   result.matrix.setRow(i, row.columns, row.values);
   result.backs[i] = rest * view.backs;
-  result.sky[i] = rest * (view.sky - leaks);
   for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
     if (view.items[item] > 0) seen_backs.push_back({Index(item - n), rest * view.items[item]});
   }
@@ -100,10 +102,10 @@ void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
     }
   };
   const bool whole = rows.known.rowAt(i) != nullptr;
-  double seen = 0;
+  bool seen = false;  // known ones, from the eye
   result.matrix.forRow(i, [&](Index j, double value) {
     if (whole || rows.known.rowAt(j) != nullptr) {
-      seen += value;
+      seen = true;
       return;
     }
     addKnownBefore(j);
@@ -122,14 +124,13 @@ void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
     const double share = rows.known.share(i, area);
     for (double& value : row.values) value *= account.fronts / share;
   } else {
-    if (seen == 0 && entries.empty()) return;
-    const double rest = row.scaleRest(replaced, seen).rest;
-    // Not the sum of the stored values, which are rounded: accounts sum to 1.
-    const double share = std::min(1.0, rows.known.share(i, area));
-    result.fronts[i] = share + rest * (result.fronts[i] - seen);
-    result.backs[i] *= rest;
-    result.sky[i] *= rest;
-    for (SeenBack& back : rows.seen_backs[i]) back.share *= rest;
+    if (!seen && entries.empty()) return;
+    const PackedRow::Scaled scaled =
+        row.scaleRest(replaced, result.backs[i] + result.sky[i], rows.closed.closed(i));
+    result.backs[i] *= scaled.rest;
+    result.sky[i] = scaled.rest * result.sky[i] + scaled.sky;
+    for (SeenBack& back : rows.seen_backs[i]) back.share *= scaled.rest;
+    result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
   }
   result.matrix.setRow(i, row.columns, row.values);
 }
@@ -152,8 +153,8 @@ void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, const Hemicu
                RowStore& store) {
   HemicubeRowCounts counts;
   const NearPairs* near_pairs = rows.scene.near_pairs ? &*rows.scene.near_pairs : nullptr;
-  const double leaks = rows.closed.keeps(i, view.sky, kMostLeaks) ? view.sky : 0;
-  storeRow(i, view, leaks, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
+  const bool closed = rows.closed.keeps(i, view.sky, kMostLeaks);
+  storeRow(i, view, closed, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
   counts.drawn = drawn;
   if (rows.journal != nullptr) keepRow(*rows.journal, i, rows.result, rows.seen_backs[i], counts);
   replaceKnown(rows, i, store.row);
@@ -353,12 +354,19 @@ FormFactors emptyRows(const PatchMesh& mesh, const FormFactorOptions& options,
   return result;
 }
 
-/// The errors of a merged matrix's entries: their squares go with the exchange area, as in van
-/// Leersum's closure (closure.h); known ones have none. The unit keeps errors of F below 1.
-UncertainEntries uncertainEntries(const ExchangeMatrix& matrix, const KnownEntries& known) {
-  const std::size_t n = matrix.size();
+/// The smallest area above 0.
+double smallestArea(const ExchangeMatrix& matrix) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const double a : matrix.area()) smallest = a > 0 ? std::min(smallest, a) : smallest;
+  return smallest;
+}
+
+/// The errors of a merged matrix's entries: their squares go with the exchange area, as in van
+/// Leersum's closure (closure.h); known ones have none. The unit, the `smallest` area, keeps errors
+/// of F below 1.
+UncertainEntries uncertainEntries(const ExchangeMatrix& matrix, double smallest,
+                                  const KnownEntries& known) {
+  const std::size_t n = matrix.size();
   UncertainEntries uncertain(n, matrix.scratch());
   parallelFor(n, 1, [&](std::size_t k) {
     const ExchangeMatrix::UpperEntries upper = matrix.upperEntries(k);
@@ -377,13 +385,33 @@ UncertainEntries uncertainEntries(const ExchangeMatrix& matrix, const KnownEntri
   return uncertain;
 }
 
-void symmetrize(const KnownEntries& known, FormFactors& result, Progress& progress) {
+/// The errors of the sky of open rows: an eye may miss as much as it may leak. So entries, which
+/// are off by more, move where they can.
+std::vector<double> skyErrors(const ClosedRows& closed, double smallest, const FormFactors& f) {
+  std::vector<double> errors(f.sky.size(), 0.0);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (closed.closed(i) || !(f.fronts[i] > 0)) continue;
+    errors[i] = std::sqrt(kMostLeaks * smallest / f.matrix.area()[i]);
+  }
+  return errors;
+}
+
+void symmetrize(const KnownEntries& known, const ClosedRows& closed, FormFactors& result,
+                Progress& progress) {
   constexpr double kTolerance = 1e-12;
   result.matrix = symmetrized(result.matrix);
-  // The row sums to restore are the raw ones: 1 in a closed scene, the share seen in an open one.
-  result.report.closure = closeRows(result.matrix, uncertainEntries(result.matrix, known),
-                                    result.fronts, progress, kTolerance);
+  // The sums to restore are the raw ones: with backs and, in an open row, the sky they are 1.
+  const double smallest = smallestArea(result.matrix);
+  const std::vector<double> sky_errors = skyErrors(closed, smallest, result);
+  result.report.closure = closeRows(result.matrix, uncertainEntries(result.matrix, smallest, known),
+                                    result.fronts, progress, kTolerance, {result.sky, sky_errors});
   result.report.symmetrized = true;
+  const std::vector<double> sums = result.matrix.rowSums();
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    // Keep a sum aimed at: storing rounds those of the matrix.
+    if (!closed.closed(i) || !result.report.closure.reached) result.fronts[i] = sums[i];
+  }
+  closed.balance(result);
 }
 
 void checkRows(FormFactors& result) {
@@ -439,7 +467,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   report.reciprocity_residual = reciprocityResidual(result.matrix);
   step();
   progress.end();
-  if (options.symmetrize) symmetrize(known, result, progress);
+  if (options.symmetrize) symmetrize(known, closed, result, progress);
   return result;
 }
 

@@ -63,21 +63,17 @@ double NearPairs::corrected(std::size_t i, std::size_t j, double seen) const {
   return fraction * exchange / area;
 }
 
-NearPairs::Outcome NearPairs::correct(std::size_t patch, PackedRow& row) const {
+NearPairs::Outcome NearPairs::correct(std::size_t patch, PackedRow& row, double beside,
+                                      bool closed) const {
   Outcome outcome;
-  double near_seen = 0;
   std::vector<std::uint8_t> replaced(row.columns.size(), 0);
   for (std::size_t k = 0; k < row.columns.size(); ++k) {
     if (!near(patch, row.columns[k])) continue;
-    near_seen += row.values[k];
     row.values[k] = corrected(patch, row.columns[k], row.values[k]);
     replaced[k] = 1;
     ++outcome.replaced;
   }
-  if (outcome.replaced == 0) return outcome;
-  const PackedRow::Scaled scaled = row.scaleRest(replaced, near_seen);
-  outcome.rest = scaled.rest;
-  outcome.capped = scaled.capped ? 1 : 0;
+  if (outcome.replaced > 0) outcome.scaled = row.scaleRest(replaced, beside, closed);
   return outcome;
 }
 

@@ -16,8 +16,8 @@ namespace radiosity {
 /// two patch sizes. Its new value is the unoccluded area-to-area form factor times the visible
 /// fraction, which is the hemicube's value over that of its eye with nothing between. Nearly all
 /// seen counts as all: pixels along an edge are no occluder. The rest of the row, backs and sky are
-/// scaled to the rest of 1, in the proportions in which they were seen: a hemicube's row sums to 1,
-/// and so does the corrected one.
+/// scaled to the rest of 1, in the proportions in which they were seen (PackedRow::scaleRest()): a
+/// hemicube's row sums to 1, and so does the corrected one.
 class NearPairs {
  public:
   /// `mesh` is kept by reference.
@@ -25,11 +25,10 @@ class NearPairs {
 
   struct Outcome {
     std::size_t replaced = 0;
-    std::size_t capped = 0;  ///< rows whose near entries alone exceed 1: scaled down to 1
-    double rest = 1;         ///< factor of the other entries, backs and sky
+    PackedRow::Scaled scaled;
   };
-  /// `row`: of `patch`, as it was seen. Thread-safe.
-  Outcome correct(std::size_t patch, PackedRow& row) const;
+  /// `row`: of `patch`, as it was seen, with `beside` on backs and sky. Thread-safe.
+  Outcome correct(std::size_t patch, PackedRow& row, double beside, bool closed) const;
 
  private:
   bool near(std::size_t i, std::size_t j) const;

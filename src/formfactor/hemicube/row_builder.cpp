@@ -86,18 +86,23 @@ void PackedRow::pack(const HemicubeView& view, std::size_t patches) {
   }
 }
 
-PackedRow::Scaled PackedRow::scaleRest(const std::vector<std::uint8_t>& replaced, double seen) {
+PackedRow::Scaled PackedRow::scaleRest(const std::vector<std::uint8_t>& replaced, double beside,
+                                       bool closed) {
   double now = 0;
-  for (std::size_t k = 0; k < columns.size(); ++k) now += replaced[k] != 0 ? values[k] : 0.0;
+  double others = beside;
+  for (std::size_t k = 0; k < columns.size(); ++k) (replaced[k] != 0 ? now : others) += values[k];
   Scaled scaled;
   double cap = 1;
-  if (now > 1) {
+  scaled.capped = now > 1;
+  if (scaled.capped || (closed && others == 0 && now > 0)) {
     cap = 1 / now;
     now = 1;
-    scaled.capped = true;
   }
-  // The rest, backs and sky had 1 - seen together.
-  scaled.rest = seen < 1 ? (1 - now) / (1 - seen) : 1.0;
+  if (others > 0) {
+    scaled.rest = (1 - now) / others;
+  } else {
+    scaled.sky = 1 - now;
+  }
   std::size_t kept = 0;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const double value = values[k] * (replaced[k] != 0 ? cap : scaled.rest);

@@ -74,12 +74,13 @@ struct PackedRow {
 
   struct Scaled {
     double rest = 1;      ///< factor of the other entries, backs and sky
+    double sky = 0;       ///< to be added to it: what the replaced entries leave if none had more
     bool capped = false;  ///< the replaced entries alone exceeded 1: scaled down to it
   };
-  /// Scales a row that summed to 1 with backs and sky before entries were replaced, so that it does
-  /// again: the rest keeps its proportions. `replaced`: by entry; `seen`: the sum of these before.
-  /// Entries of 0 are dropped.
-  Scaled scaleRest(const std::vector<std::uint8_t>& replaced, double seen);
+  /// Scales a row in which entries were `replaced` (by entry), so that it sums to 1 with backs and
+  /// sky, which are `beside` it: the rest keeps its proportions. If there is no rest, a closed row
+  /// is scaled whole, and what an open one leaves is sky. Entries of 0 are dropped.
+  Scaled scaleRest(const std::vector<std::uint8_t>& replaced, double beside, bool closed);
 };
 
 }  // namespace radiosity

@@ -239,18 +239,6 @@ void close(const ClosedRows& closed, const UncertainEntries& uncertain, ClosureM
   }
 }
 
-/// Sets the sky to the rest of each open row. What a closed one misses, or any has beyond 1, is its
-/// error.
-void balance(const ClosedRows& closed, FormFactors& result) {
-  FormFactorReport& report = result.report;
-  for (std::size_t i = 0; i < result.fronts.size(); ++i) {
-    if (result.fronts[i] + result.backs[i] + result.sky[i] == 0) continue;
-    const double rest = 1 - result.fronts[i] - result.backs[i];
-    result.sky[i] = closed.closed(i) ? 0.0 : std::max(0.0, rest);
-    report.largest_row_error = std::max(report.largest_row_error, std::abs(rest - result.sky[i]));
-  }
-}
-
 void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
   if (!report.rays.loosened_tolerance) return;
   const double tolerance = options.toleranceOf(FormFactorMethod::rays);
@@ -324,7 +312,7 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   const double closing = clockSeconds();
   report.rays.seconds_merge += closing - storing;
   close(closed, uncertain, options.closure, beside, result, progress);
-  balance(closed, result);
+  closed.balance(result);
   accountForBacks(mesh, scene.order(), result.matrix.area(), beside.seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
   if (processes != nullptr) share(*processes, progress, result.matrix);

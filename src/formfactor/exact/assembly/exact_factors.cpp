@@ -180,15 +180,14 @@ void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_for
 void setAccounts(const PatchMesh& mesh, const PatchOrder& order, double tolerance,
                  ClosedRows& closed, FormFactors& result) {
   result.fronts = result.matrix.rowSums();
-  FormFactorReport& report = result.report;
   for (std::size_t k = 0; k < order.ranked; ++k) {
     const Index i = order.patch[k];
     const double rest = 1 - result.fronts[i] - result.backs[i];
-    const bool is_closed = closed.keeps(i, rest, kMostMissing + tolerance);
-    result.sky[i] = is_closed ? 0.0 : std::max(0.0, rest);
-    report.largest_row_error = std::max(report.largest_row_error, std::abs(rest - result.sky[i]));
+    closed.keeps(i, rest, kMostMissing + tolerance);
+    result.sky[i] = std::max(0.0, rest);
   }
-  closed.report(mesh, report);
+  closed.balance(result);
+  closed.report(mesh, result.report);
 }
 
 /// Reports how far closed rows are from 1 and, if asked to, puts the difference on the occluded
@@ -205,6 +204,7 @@ void close(const PatchOrder& order, const ClosedRows& closed, const UncertainEnt
   if (report.closure_enforced) {
     report.closure = closeRows(result.matrix, uncertain, target, progress);
     result.fronts = result.matrix.rowSums();
+    closed.balance(result);
   } else {
     report.closure = reportClosure(result.fronts, target);
   }
