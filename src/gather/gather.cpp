@@ -307,8 +307,6 @@ void runPasses(const GatherScene& scene, std::unique_ptr<GpuEye> eye, const Gath
   const HemicubeCounts counts = passes.counts();
   summary.hemicubes = counts.hemicubes / summary.passes.size();
   summary.pixels = counts.pixels / summary.passes.size();
-  std::optional<Enclosures> found;
-  summary.closed = counts.hemicubes > 0 && enclosuresOf(scene.mesh, found).closed;
   summary.bytes = passes.bytes();
 }
 
@@ -357,6 +355,8 @@ Gathered gatherIn(const GatherScene& scene, std::unique_ptr<GpuEye> eye,
   for (const Eye& at : scene.eyes) result.position.push_back(at.position);
   GatherSummary& summary = result.summary;
   summary.simd_target = scene.rows.kernels().target;
+  std::optional<Enclosures> found;
+  summary.closed = enclosuresOf(scene.mesh, found).closed;
   if (scene.isLit()) {
     runPasses(scene, std::move(eye), options, result, progress);
   } else {

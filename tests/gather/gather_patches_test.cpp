@@ -203,6 +203,7 @@ TEST(GatherAtPatches, DarkScenesAreReportedAndBadInputIsRefused) {
   for (double& e : dark.materials.emission) e = 0;
   const Gathered black = test::gathered(dark, atPatches(5));
   EXPECT_EQ(black.summary.status, GatherStatus::no_light);
+  EXPECT_TRUE(black.summary.closed) << "whether it is lit or not";
   EXPECT_EQ(*std::max_element(black.radiosity.begin(), black.radiosity.end()), 0.0F);
   room.materials.reflectance[3 * 7 + 1] = 1.5;
   try {
