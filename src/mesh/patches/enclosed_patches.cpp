@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <compare>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <tuple>
@@ -13,6 +12,7 @@
 #include "base/parallel.h"
 #include "base/union_find.h"
 #include "mesh/edge_key.h"
+#include "mesh/patches/edge_users.h"
 #include "mesh/patches/enclosures.h"
 #include "mesh/patches/polygon_contacts.h"
 #include "scene/checks/winding_tree.h"
@@ -34,17 +34,6 @@ constexpr std::size_t kPatchesAtOnce = 64;
 
 /// The sides of polygon p: 2 p in front and 2 p + 1 behind.
 Index sideOf(Index polygon, bool back) { return 2 * polygon + (back ? 1 : 0); }
-
-/// A polygon that runs along an edge, from its smaller vertex to the larger or back.
-struct EdgeUse {
-  std::uint64_t edge = 0;  ///< edgeKey()
-  Index polygon = kNone;
-  bool reversed = false;
-
-  Index low() const { return Index(edge >> 32); }
-  Index high() const { return Index(edge); }
-  auto operator<=>(const EdgeUse&) const = default;
-};
 
 /// A polygon at an edge: its direction as an angle about the edge, and the sides that look to
 /// larger and smaller angles.
@@ -121,33 +110,16 @@ class SpaceSearch {
  private:
   const Vec3& at(Index vertex) const { return mesh_.vertices[vertex]; }
 
-  std::vector<EdgeUse> edgeUses() const {
-    std::vector<EdgeUse> uses;
-    uses.reserve(all_.corners.size());
-    for (Index p = 0; p < all_.size(); ++p) {
-      for (std::size_t l = all_.loopBegin(p); l < all_.loopEnd(p); ++l) {
-        const std::span<const Index> loop = all_.loop(l);
-        for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
-          const Index from = first_[loop[last]];
-          const Index to = first_[loop[k]];
-          if (from != to) uses.push_back({edgeKey(from, to), p, from > to});
-        }
-      }
-    }
-    parallelSort(uses);
-    return uses;
-  }
-
   /// Cuts edges of one polygon at the ends of others on them: faces as patches may have
   /// T-junctions.
-  std::vector<EdgeUse> withoutTJunctions(std::vector<EdgeUse> uses) const {
-    std::vector<std::uint8_t> alone(uses.size(), 0);
+  std::vector<EdgeUser> withoutTJunctions(std::vector<EdgeUser> users) const {
+    std::vector<std::uint8_t> alone(users.size(), 0);
     std::vector<Index> ends;
-    forEdges(uses, [&](std::size_t from, std::size_t to) {
-      if (to - from > 1) return;
-      alone[from] = 1;
-      ends.push_back(uses[from].low());
-      ends.push_back(uses[from].high());
+    forEdges(users, [&](std::span<const EdgeUser> of_edge) {
+      if (of_edge.size() > 1) return;
+      alone[std::size_t(&of_edge[0] - users.data())] = 1;
+      ends.push_back(of_edge[0].low());
+      ends.push_back(of_edge[0].high());
     });
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
@@ -155,12 +127,12 @@ class SpaceSearch {
     places.reserve(ends.size());
     for (const Index v : ends) places.push_back({at(v), at(v)});
     const BoxTree tree(places);
-    std::vector<EdgeUse> cut;
-    cut.reserve(uses.size());
+    std::vector<EdgeUser> cut;
+    cut.reserve(users.size());
     std::vector<std::pair<double, Index>> on;  // squared distance from the low end, vertex
-    for (std::size_t k = 0; k < uses.size(); ++k) {
-      const Index low = uses[k].low();
-      const Index high = uses[k].high();
+    for (std::size_t k = 0; k < users.size(); ++k) {
+      const Index low = users[k].low();
+      const Index high = users[k].high();
       on.clear();
       if (alone[k] != 0) {
         const auto near = [&](const Box3& box) {
@@ -176,34 +148,23 @@ class SpaceSearch {
       }
       Index from = low;
       for (const auto& [distance, vertex] : on) {
-        cut.push_back(part(uses[k], from, vertex));
+        cut.push_back(part(users[k], from, vertex));
         from = vertex;
       }
-      cut.push_back(part(uses[k], from, high));
+      cut.push_back(part(users[k], from, high));
     }
     parallelSort(cut);
     return cut;
   }
 
-  static EdgeUse part(const EdgeUse& use, Index from, Index to) {
-    return {edgeKey(from, to), use.polygon, use.reversed != (from > to)};
-  }
-
-  template <class Visit>
-  static void forEdges(const std::vector<EdgeUse>& uses, const Visit& visit) {
-    for (std::size_t from = 0; from < uses.size();) {
-      std::size_t to = from + 1;
-      while (to < uses.size() && uses[to].edge == uses[from].edge) ++to;
-      visit(from, to);
-      from = to;
-    }
+  static EdgeUser part(const EdgeUser& user, Index from, Index to) {
+    return {edgeKey(from, to), user.reversed != (from > to), user.polygon};
   }
 
   void join() {
-    const std::vector<EdgeUse> uses = withoutTJunctions(edgeUses());
     std::vector<Wing> wings;
-    forEdges(uses, [&](std::size_t from, std::size_t to) {
-      wingsOf(std::span(uses).subspan(from, to - from), wings);
+    forEdges(withoutTJunctions(edgeUsers(all_, first_)), [&](std::span<const EdgeUser> users) {
+      wingsOf(users, wings);
       for (std::size_t k = 0; k < wings.size(); ++k) {
         const Index up = wings[k].up;
         const Index down = wings[(k + 1) % wings.size()].down;
@@ -215,15 +176,15 @@ class SpaceSearch {
   }
 
   /// The polygons at an edge, by angle. If some lie back to back, their backs face each other.
-  void wingsOf(std::span<const EdgeUse> uses, std::vector<Wing>& wings) const {
+  void wingsOf(std::span<const EdgeUser> users, std::vector<Wing>& wings) const {
     wings.clear();
-    const Vec3 along = glm::normalize(at(uses[0].high()) - at(uses[0].low()));
+    const Vec3 along = glm::normalize(at(users[0].high()) - at(users[0].low()));
     Vec3 u(0.0);
     Vec3 v(0.0);
-    for (const EdgeUse& use : uses) {
+    for (const EdgeUser& user : users) {
       // To the left of an edge, seen from the front, is the polygon.
-      const Vec3& normal = all_.normal[use.polygon];
-      const Vec3 inward = glm::cross(normal, use.reversed ? -along : along);
+      const Vec3& normal = all_.normal[user.polygon];
+      const Vec3 inward = glm::cross(normal, user.reversed ? -along : along);
       if (wings.empty()) {
         u = inward;
         v = glm::cross(along, u);
@@ -232,7 +193,7 @@ class SpaceSearch {
       if (angle < -kSameDirection) angle += 2 * std::numbers::pi;
       // About the edge, angles grow towards `along` x inward, which is the normal or its opposite.
       wings.push_back(
-          {angle, sideOf(use.polygon, use.reversed), sideOf(use.polygon, !use.reversed)});
+          {angle, sideOf(user.polygon, user.reversed), sideOf(user.polygon, !user.reversed)});
     }
     std::sort(wings.begin(), wings.end(), [](const Wing& a, const Wing& b) {
       return std::tie(a.angle, a.up) < std::tie(b.angle, b.up);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <compare>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
@@ -16,32 +15,10 @@
 #include "base/geometry/solid_angle.h"
 #include "base/parallel.h"
 #include "base/union_find.h"
-#include "mesh/edge_key.h"
+#include "mesh/patches/edge_users.h"
 
 namespace radiosity {
 namespace {
-
-/// A polygon that runs along an edge, from its smaller vertex to the larger or back.
-struct EdgeUser {
-  std::uint64_t edge = 0;  ///< edgeKey()
-  bool reversed = false;
-  Index polygon = kNone;
-
-  bool isPoint() const { return Index(edge >> 32) == Index(edge); }
-  auto operator<=>(const EdgeUser&) const = default;
-};
-
-/// Calls visit(from, to) for all runs of 0 .. count - 1 whose members are the `same` as their
-/// first.
-template <class Same, class Visit>
-void forRuns(std::size_t count, const Same& same, const Visit& visit) {
-  for (std::size_t from = 0; from < count;) {
-    std::size_t to = from + 1;
-    while (to < count && same(from, to)) ++to;
-    visit(from, to);
-    from = to;
-  }
-}
 
 /// Visits triangles (first corner of the loop, edge) whose signed sum is the polygons, holes
 /// included.
@@ -95,52 +72,36 @@ class EnclosureSearch {
   /// one-sided polygons has only such edges, it is a closed oriented surface; if embedded, it
   /// separates two regions.
   void findSurfaces() {
-    std::vector<EdgeUser> users;
     const PlanarPolygons& all = mesh_.polygons;
-    users.reserve(all.corners.size());
-    for (Index p = 0; p < all.size(); ++p) {
-      for (std::size_t l = all.loopBegin(p); l < all.loopEnd(p); ++l) {
-        const std::span<const Index> loop = all.loop(l);
-        for (std::size_t k = 0, last = loop.size() - 1; k < loop.size(); last = k++) {
-          const Index from = first_[loop[last]];
-          const Index to = first_[loop[k]];
-          users.push_back({edgeKey(from, to), from > to, p});
-        }
-      }
-    }
-    parallelSort(users);
     UnionFind sets(all.size());
     std::vector<std::uint8_t> open(all.back_is_patch);
-    forRuns(
-        users.size(), [&](std::size_t i, std::size_t k) { return users[i].edge == users[k].edge; },
-        [&](std::size_t from, std::size_t to) {
-          if (to - from == 2 && !users[from].reversed && users[from + 1].reversed) {
-            sets.unite(users[from].polygon, users[from + 1].polygon);
-            return;
-          }
-          if (to - from == 1 && users[from].isPoint()) return;
-          for (std::size_t k = from; k < to; ++k) open[users[k].polygon] = 1;
-        });
+    forEdges(edgeUsers(all, first_), [&](std::span<const EdgeUser> users) {
+      if (users.size() == 2 && !users[0].reversed && users[1].reversed) {
+        sets.unite(users[0].polygon, users[1].polygon);
+        return;
+      }
+      for (const EdgeUser& user : users) open[user.polygon] = 1;
+    });
     std::vector<std::pair<Index, Index>> members(all.size());  // set, polygon
     for (Index p = 0; p < all.size(); ++p) members[p] = {sets.find(p), p};
     parallelSort(members);
-    const auto sameSet = [&](std::size_t i, std::size_t k) {
-      return members[i].first == members[k].first;
-    };
-    forRuns(members.size(), sameSet, [&](std::size_t from, std::size_t to) {
+    for (std::size_t k = 0; k < members.size();) {
       std::vector<Index> polygons;
-      polygons.reserve(to - from);
-      for (std::size_t k = from; k < to; ++k) polygons.push_back(members[k].second);
+      const Index set = members[k].first;
+      for (; k < members.size() && members[k].first == set; ++k) {
+        polygons.push_back(members[k].second);
+      }
       progress_.check();
-      // Polygons back to back enclose nothing.
-      const bool flat = std::all_of(polygons.begin(), polygons.end(),
-                                    [&](Index p) { return found_.covered[p] != 0; });
+      // Polygons back to back enclose nothing, and neither does one alone.
+      const bool flat =
+          polygons.size() == 1 || std::all_of(polygons.begin(), polygons.end(),
+                                              [&](Index p) { return found_.covered[p] != 0; });
       const bool closed = !flat && std::none_of(polygons.begin(), polygons.end(),
                                                 [&](Index p) { return open[p] != 0; });
       if (closed && isEmbedded(mesh_, first_, polygons, coincidence_)) {
         addSurface(std::move(polygons));
       }
-    });
+    }
   }
 
   void addSurface(std::vector<Index> polygons) {
