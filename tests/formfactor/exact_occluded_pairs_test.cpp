@@ -235,6 +235,56 @@ TEST(OccludedPairs, PointsAreTakenOnTheEndWithSlowerShadows) {
   EXPECT_LT(calmer.change, restless.change);
 }
 
+/// A square of side .5, a strip of .05 by 1 facing it from a height of 2, along y or x, and between
+/// them a half plane, or nearly so, that ends in x = `edge`, parallel to y.
+PairsCase stripPastAnEdge(bool along_edge, double edge) {
+  MeshBuilder builder;
+  square(builder, "square", 0, 0, 0, 0.5, true);
+  const Vec3 half = along_edge ? Vec3(0.025, 0.5, 0) : Vec3(0.5, 0.025, 0);
+  const Vec3 u(2 * half.x, 0, 0);
+  const Vec3 v(0, 2 * half.y, 0);
+  builder.grid("strip", Vec3(0, 0, 2) - half, v, u, 1, 1, false);
+  builder.grid("half plane", {edge - 9, -9, 1}, {9, 0, 0}, {0, 18, 0}, 1, 1, true);
+  return PairsCase(builder.build());
+}
+
+double changeOf(const PairsCase& scene) {
+  const EdgeDistances distances(scene.elements, scene.occluders);
+  PairPreparation ready(scene.elements, scene.occluders, distances);
+  double change = 0;
+  // With the points on the square.
+  for (const SampledEnd end : {SampledEnd::calmer, SampledEnd::restless}) {
+    ready.prepare(std::span(&firstPair(scene), 1), scene.list, end);
+    const SampledPair& pair = ready.pairs.at(0);
+    if (scene.mesh.surface[scene.elements.patch[pair.sampled]] == 0) change = pair.change;
+  }
+  return change;
+}
+
+TEST(OccludedPairs, ShadowsMoveAcrossTheWidthOfANarrowTarget) {
+  // Midway the edge's shadow moves as far as the eye, by .5: ten widths of the strip. If the strip
+  // is turned, it moves along it, by half its length; the nearest edge alone says a bit more.
+  EXPECT_NEAR(changeOf(stripPastAnEdge(true, 0)), 10, 0.1);
+  EXPECT_GT(changeOf(stripPastAnEdge(false, 0)), 0.5);
+  EXPECT_LT(changeOf(stripPastAnEdge(false, 0)), 1.5);
+}
+
+TEST(OccludedPairs, AShadowThatSlipsPastTheSamplesOfANarrowTargetIsStated) {
+  // The strip is hidden from the outer tenth of the square, beyond all points of the first rule.
+  for (const double hidden : {0.03, 0.05, 0.07}) {
+    const PairsCase scene = stripPastAnEdge(true, 0.5 * (hidden - 0.275));
+    OccludedExchange found;
+    OccludedCounts counts;
+    OccludedKernel(scene.elements, scene.occluders, 0.1, true)
+        .evaluate(std::span(&firstPair(scene), 1), scene.list, std::span(&found, 1), counts);
+    const double area = scene.elements.scale * scene.elements.scale;
+    const truth::GroundTruth truth(scene.mesh, {});
+    const double error =
+        std::abs(found.exchange / area - scene.mesh.area[0] * truth.formFactor(0, 1));
+    EXPECT_LT(error, found.error / area) << hidden;
+  }
+}
+
 TEST(OccludedPairs, ErrorOfFarKernelsIsStated) {
   // A target some of its radii away, to one side, part of it behind a straight edge: no kink
   // between the points, and at loose tolerances kernels that expand about the target's middle. The

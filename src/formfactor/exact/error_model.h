@@ -52,16 +52,16 @@ inline constexpr double kCellKinked9 = 0.022;
 inline constexpr double kCellSlope9 = 0.002;
 
 /// Times change * whole, 2 x 2 points, flat cells: unseen(). Rule: cell.
-inline constexpr double kCellUnseenFlat4 = 0.011;
+inline constexpr double kCellUnseenFlat4 = 0.008;
 
 /// The same where shapes differ, so that differences may be small by chance. Rule: cell.
-inline constexpr double kCellUnseenKinked4 = 0.011;
+inline constexpr double kCellUnseenKinked4 = 0.008;
 
 /// The same where there seems to be no kink. Rule: cell.
-inline constexpr double kCellUnseenSmooth4 = 0.004;
+inline constexpr double kCellUnseenSmooth4 = 0.003;
 
 /// Times change * whole, 3 x 3 points, flat cells: unseen(). Rule: cell.
-inline constexpr double kCellUnseenFlat9 = 0.0055;
+inline constexpr double kCellUnseenFlat9 = 0.004;
 
 /// The same where shapes differ. Rule: cell.
 inline constexpr double kCellUnseenKinked9 = 0.002;
@@ -108,7 +108,7 @@ inline constexpr double kMostChange = 5;
 
 /// Times the change: root mean square of the error of a visible fraction by 2 x 2 points:
 /// expectedError(). Rule: expected.
-inline constexpr double kPairExpected4 = 0.016;
+inline constexpr double kPairExpected4 = 0.009;
 
 /// Targets nearer than so many of their radii are near: VisibleFraction::near. Set by hand: it
 /// separates kinds of parts between critical lines.

@@ -104,6 +104,7 @@ PairPreparation::PairPreparation(const ElementSet& elements, const OccluderSet& 
     : elements_(elements),
       occluders_(occluders),
       distances_(distances),
+      change_(elements),
       between_(occluders.occluders.size()) {}
 
 const PairPreparation::Between& PairPreparation::between(Index occluder, Index row_facet,
@@ -125,40 +126,24 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
   return found;
 }
 
-/// Changes by similar triangles with their tips on the occluders' edges. The shadow of an edge that
-/// touches the target does not move, but other edges of the same occluder may be a target's size
-/// away.
-PairPreparation::EdgeDistancesSquared PairPreparation::shadowChanges(double row_size,
-                                                                     double column_size) const {
-  const double row_size2 = row_size * row_size;
-  const double column_size2 = column_size * column_size;
-  // Apart, or beside the target: squares, in sizes of the sampled element.
-  const double by_row = row_size2 / column_size2;
-  const double by_column = column_size2 / row_size2;
-  EdgeDistancesSquared most{0, 0};
-  for (const EdgeDistancesSquared& blocker : near_) {
-    most.row = std::max(most.row, std::max(blocker.column * by_row, row_size2) / blocker.row);
-    most.column =
-        std::max(most.column, std::max(blocker.row * by_column, column_size2) / blocker.column);
-  }
-  return most;
-}
-
-/// Keeps the blockers of a pair, with how far they are from both ends; returns the least of that.
-PairPreparation::EdgeDistancesSquared PairPreparation::addBlockers(
-    const OccludedPair& given, std::span<const Index> occluder_list) {
+/// Keeps the blockers of a pair, with how their shadows change; returns the least squares of the
+/// distances from both ends to their edges.
+BothEnds PairPreparation::addBlockers(const OccludedPair& given,
+                                      std::span<const Index> occluder_list) {
   constexpr double kNoEdge = std::numeric_limits<double>::infinity();
-  EdgeDistancesSquared nearest{kNoEdge, kNoEdge};
+  BothEnds nearest{kNoEdge, kNoEdge};
   const Index row_facet = elements_.facet[given.row];
   const Index column_facet = elements_.facet[given.column];
-  near_.clear();
+  change_.begin(given.row, given.column);
   for (std::uint32_t o = given.occluders_begin; o < given.occluders_end; ++o) {
     const Index id = occluder_list[o];
     if (!between(id, row_facet, column_facet).blocks) continue;
-    blockers.push_back({&occluders_.occluders[id], id, false});
-    near_.push_back({distances_.squared(given.row, id), distances_.squared(given.column, id)});
-    nearest.row = std::min(nearest.row, near_.back().row);
-    nearest.column = std::min(nearest.column, near_.back().column);
+    const Occluder& body = occluders_.occluders[id];
+    blockers.push_back({&body, id, false});
+    const BothEnds near{distances_.squared(given.row, id), distances_.squared(given.column, id)};
+    change_.add(body, near);
+    nearest.row = std::min(nearest.row, near.row);
+    nearest.column = std::min(nearest.column, near.column);
   }
   return nearest;
 }
@@ -174,11 +159,11 @@ void PairPreparation::addPair(std::uint32_t number, const OccludedPair& given,
   SampledPair pair;
   pair.pair = number;
   pair.blockers_begin = std::uint32_t(blockers.size());
-  const EdgeDistancesSquared nearest = addBlockers(given, occluder_list);
+  const BothEnds nearest = addBlockers(given, occluder_list);
   pair.blockers_end = std::uint32_t(blockers.size());
   const double row_size = elements_.radius[given.row];
   const double column_size = elements_.radius[given.column];
-  const EdgeDistancesSquared change2 = shadowChanges(row_size, column_size);
+  const BothEnds change2 = change_.squared();
   const bool row_is_calmer = change2.row <= kAlike * change2.column;
   const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
   pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formfactor/exact/elements/elements.h"
+#include "formfactor/exact/occluded/shadow_change.h"
 #include "formfactor/exact/occluded/visible_part.h"
 #include "formfactor/exact/occluders/occluders.h"
 
@@ -86,25 +87,19 @@ class PairPreparation {
     std::uint64_t key;
     std::uint32_t pair;
   };
-  /// Squares of the distances from both ends of a pair to the nearest edge of one occluder.
-  struct EdgeDistancesSquared {
-    double row, column;
-  };
-  EdgeDistancesSquared addBlockers(const OccludedPair& given, std::span<const Index> occluder_list);
+  BothEnds addBlockers(const OccludedPair& given, std::span<const Index> occluder_list);
   void addPair(std::uint32_t number, const OccludedPair& given,
                std::span<const Index> occluder_list, SampledEnd end);
   void sortPairs();
   const Between& between(Index occluder, Index row_facet, Index column_facet);
-  /// Squares of SampledPair::change with the points on one end or the other.
-  EdgeDistancesSquared shadowChanges(double row_size, double column_size) const;
 
   const ElementSet& elements_;
   const OccluderSet& occluders_;
   const EdgeDistances& distances_;
   std::vector<SortedPair> order_;
   std::vector<SampledPair> sorted_;
-  std::vector<EdgeDistancesSquared> near_;  ///< of the current pair, by occluder
-  std::vector<Between> between_;            ///< by occluder, of the current two facets
+  ShadowChange change_;           ///< of the current pair
+  std::vector<Between> between_;  ///< by occluder, of the current two facets
   std::uint32_t stamp_ = 0;
   Index row_facet_ = kNone;
   Index column_facet_ = kNone;
