@@ -493,10 +493,11 @@ TEST(ExactStress, NoiseOnCornersLeavesNoPatchOfRounding) {
       double seen = 0;
       for (std::size_t i = 0; i < mesh.size(); ++i) {
         f.matrix.forRow(i, [&](Index, double value) { ASSERT_GE(value, 0.0) << i; });
-        // Without noise the largest is .004. A patch as thin as rounding has .1 to 2. (Gaps wider
-        // than four coincidences are strips of their own, with errors of their own.)
+        // Without noise the largest is .004, and of strips as thin as a few coincidences .025. A
+        // patch as thin as rounding has .1 to 2. (Gaps wider than four coincidences are strips of
+        // their own, with errors of their own.)
         if (noise < 2e-7) {
-          EXPECT_LT(f.error[i], 0.02) << i;
+          EXPECT_LT(f.error[i], 0.05) << i;
         }
         if (mesh.surface_names[mesh.surface[i]] != "block/block") continue;
         area += mesh.area[i];

@@ -8,6 +8,8 @@
 #include "exact_scenes.h"
 #include "formfactor/computed_factors.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/scene.h"
+#include "support/scene_builder.h"
 #include "truth/ground_truth.h"
 
 namespace radiosity {
@@ -99,6 +101,44 @@ TEST(ExactAgainstTruth, ErrorFiguresCoverTheErrorsAndAreNotMuchLarger) {
   }
   // Of 120 rows 1.2 may be uncovered on average; 4 or fewer are with a probability of 99%.
   EXPECT_LE(uncovered, 4u);
+}
+
+/// A blind of slats `tilt` radians from the level, between a floor and a wall, and what is outside
+/// of it; all is seen from both sides.
+Scene blind(double tilt) {
+  test::SceneBuilder builder;
+  const Index all = builder.surface("all", 0.5, 0, true);
+  builder.level(all, 0, 0, 2.74, 2.64, 0);
+  builder.face(all, {{2.74, 0, 0}, {2.74, 0, 1.43}, {2.74, 2.64, 1.43}, {2.74, 2.64, 0}});
+  builder.face(all, {{-0.71, 0, 0}, {-0.71, 2.64, 0}, {-0.71, 2.64, 1.43}, {-0.71, 0, 1.43}});
+  const Vec3 along(0, 2.376, 0);
+  const Vec3 across(0.1126 * std::cos(tilt), 0, 0.1126 * std::sin(tilt));
+  for (int k = 0; k < 14; ++k) {
+    const Vec3 at = Vec3(0, 0.132, 0.045 + 0.0967 * k + 0.5 * std::abs(across.z)) - 0.5 * across;
+    builder.face(all, {at, at + across, at + across + along, at + along});
+  }
+  return builder.scene();
+}
+
+TEST(ExactAgainstTruth, ErrorFiguresCoverShadowsOfSlats) {
+  for (const Scene& scene : {blind(0.5), test::turned(blind(0.5)), blind(0.7)}) {
+    const PatchMesh mesh = test::meshOf(scene, 300);
+    const FormFactors f = test::exactInDouble(mesh, 1e-3);
+    const FormFactors better = test::exactInDouble(mesh, 1e-4);
+    std::size_t uncovered = 0;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      double square = 0;
+      for (std::size_t j = 0; j < mesh.size(); ++j) {
+        const double off = f.matrix.at(i, j) - better.matrix.at(i, j);
+        square += off * off;
+      }
+      const double error = std::sqrt(square);
+      EXPECT_LE(error, 2 * f.error[i]) << i;
+      uncovered += error > f.error[i];
+    }
+    // 1% of rows.
+    EXPECT_LE(uncovered, mesh.size() / 100);
+  }
 }
 
 TEST(ExactAgainstTruth, ATighterToleranceLowersTheError) {

@@ -143,7 +143,7 @@ inline constexpr double kPairMost = 12;
 /// pairs of a scene, and rows have luck of their own: their points and the shadows' edges that pass
 /// them are common to many of their pairs, the more so where a scene is symmetric and pairs are
 /// alike. Rule: margin.
-inline constexpr double kPairMargin = 3.1;
+inline constexpr double kPairMargin = 2.2;
 
 /// Share of the unoccluded exchange that points may miss, and be believed: OccludedKernel. Set by
 /// hand: it separates pairs by what is done with them. (Of pairs that miss by less, 1% are off by

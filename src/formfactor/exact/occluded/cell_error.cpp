@@ -50,13 +50,11 @@ double CellValues::seen() const {
     const double along_v = std::abs(r[2] - r[0]) + std::abs(r[3] - r[1]);
     return 0.5 * (along_u + along_v) * (one_shape ? kCellSmooth4 : kCellKinked4);
   }
-  double bend = 0;
+  const double bend = bendOf(std::span(r).first<9>());
   double slope = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double* row = &r[3 * k];
     const double* column = &r[k];
-    bend += kGaussWeight3[k] * std::abs(row[0] - 2 * row[1] + row[2]);
-    bend += kGaussWeight3[k] * std::abs(column[0] - 2 * column[3] + column[6]);
     slope += kGaussWeight3[k] * (std::abs(row[2] - row[0]) + std::abs(column[6] - column[0]));
   }
   // A kink between the outer points and the border changes the slope there, and nothing else.

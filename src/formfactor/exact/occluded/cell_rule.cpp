@@ -1,5 +1,6 @@
 #include "formfactor/exact/occluded/cell_rule.h"
 
+#include <cmath>
 #include <glm/geometric.hpp>
 
 namespace radiosity {
@@ -15,6 +16,17 @@ constexpr std::array<double, 3> kNode3 = {0.5 - kReach3, 0.5, 0.5 + kReach3};
 constexpr double kMargin = 0.02;
 
 }  // namespace
+
+double bendOf(std::span<const double, 9> values) {
+  double bend = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double* row = &values[3 * k];
+    const double* column = &values[k];
+    bend += kGaussWeight3[k] * std::abs(row[0] - 2 * row[1] + row[2]);
+    bend += kGaussWeight3[k] * std::abs(column[0] - 2 * column[3] + column[6]);
+  }
+  return bend;
+}
 
 SamplePoint SampleCell::at(double u, double v) const {
   const Vec3 along_u = (corners[1] - corners[0]) * (1 - v) + (corners[2] - corners[3]) * v;

@@ -27,6 +27,9 @@ struct SamplePoints {
 /// Weights of the three Gauss-Legendre points on [0, 1].
 inline constexpr std::array<double, 3> kGaussWeight3 = {5.0 / 18, 8.0 / 18, 5.0 / 18};
 
+/// Second differences of the values at 3 x 3 points, along each axis, weighted across it.
+double bendOf(std::span<const double, 9> values);
+
 /// A convex quadrilateral (a triangle: its last two corners are one).
 struct SampleCell {
   std::array<Vec3, 4> corners;

@@ -87,8 +87,13 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, const Batch& batch
       const VisibleFraction& found = fractions[k];
       const OccludedPair& pair = pairs[group[k].pair];
       OccludedExchange& exchange = out[group[k].pair];
-      exchange = {pair.unoccluded * found.fraction(), kPairMargin * pair.unoccluded * found.error(),
-                  std::abs(found.whole / pair.unoccluded - 1), found.cut_short};
+      const double seen = found.fraction();
+      const double missed = std::abs(found.whole / pair.unoccluded - 1);
+      // What points missed is seen or hidden as the rest is: twice seen (1 - seen) on average.
+      const double of_missed = 2 * seen * (1 - seen) * missed;
+      exchange = {pair.unoccluded * seen,
+                  pair.unoccluded * std::hypot(kPairMargin * found.error(), of_missed), missed,
+                  found.cut_short};
       if (!std::isfinite(exchange.exchange) || !std::isfinite(exchange.error)) {
         exchange = exchangeBySegments(elements_, occluders_, pair, batch.occluder_list);
         ++batch.counts.by_segments;
