@@ -18,12 +18,10 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "assimp/assimp_files.h"
 #include "scene/assimp/assimp_messages.h"
 #include "scene/assimp/assimp_scene.h"
 
@@ -36,12 +34,10 @@ constexpr int kSocket = STDIN_FILENO;
 /// Memory and time grow with the bytes that are read: Assimp's models take up to some tens of bytes
 /// a byte of the file, text and compressed numbers the most.
 void allow(std::uint64_t bytes) {
-  static std::uint64_t total = 0;
-  total += bytes;
   constexpr std::uint64_t kLeast = std::uint64_t(1) << 30, kPerByte = 100;
   constexpr std::uint64_t kLeastSeconds = 60, kBytesPerSecond = std::uint64_t(1) << 14;
-  const rlimit memory{kLeast + kPerByte * total, RLIM_INFINITY};
-  const rlimit seconds{kLeastSeconds + total / kBytesPerSecond, RLIM_INFINITY};
+  const rlimit memory{kLeast + kPerByte * bytes, RLIM_INFINITY};
+  const rlimit seconds{kLeastSeconds + bytes / kBytesPerSecond, RLIM_INFINITY};
   setrlimit(RLIMIT_AS, &memory);
   setrlimit(RLIMIT_CPU, &seconds);
 }
@@ -190,41 +186,23 @@ AssimpScene sceneOf(const aiScene& file) {
 
 using File = std::unique_ptr<const aiScene, void (*)(const aiScene*)>;
 
-File import(const std::string& path, aiFileIO* files, bool checked) {
+File import(const std::string& path) {
   const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(aiCreatePropertyStore(),
                                                                             aiReleasePropertyStore);
   // We want the names that people gave, not ids.
   aiSetImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
   // Assimp must not add octahedra for nodes if a file has no meshes.
   aiSetImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
-  const unsigned check = checked ? unsigned(aiProcess_ValidateDataStructure) : 0U;
-  return {aiImportFileExWithProperties(path.c_str(), check | aiProcess_TransformUVCoords, files,
-                                       wishes.get()),
+  constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords;
+  return {aiImportFileExWithProperties(path.c_str(), kSteps, nullptr, wishes.get()),
           aiReleaseImport};
 }
 
-/// The content of a file, from the parent.
-std::string contentOf(const std::string& path) {
-  std::string content;
-  sendMessage(kSocket, AssimpMessage::open, path);
-  const auto answer = receiveMessage(kSocket, content, ~std::uint64_t(0));
-  if (!answer) std::_Exit(EXIT_FAILURE);  // the parent is gone
-  if (*answer != AssimpMessage::content) throw std::runtime_error(path + ": cannot be read");
-  allow(content.size());
-  return content;
-}
-
-void answer(AssimpMessage request, const std::string& path) {
-  AssimpFiles given(contentOf);
-  const bool asks = request != AssimpMessage::read_itself;
-  if (!asks) allow(std::filesystem::file_size(path));
-  const File file =
-      import(path, asks ? given.io() : nullptr, request != AssimpMessage::read_given_unchecked);
+void answer(const std::string& path) {
+  allow(std::filesystem::file_size(path));
+  const File file = import(path);
   if (file == nullptr || file->mRootNode == nullptr) {
-    const std::string& refusal = given.refusal();
-    const bool refused = !refusal.empty();
-    sendMessage(kSocket, refused ? AssimpMessage::refused : AssimpMessage::cannot_read,
-                refused ? refusal : aiGetErrorString());
+    sendMessage(kSocket, AssimpMessage::cannot_read, aiGetErrorString());
     return;
   }
   AssimpWriter writer;
@@ -248,7 +226,7 @@ int main(int count, char** words) {
   allow(0);
   std::string path;
   const auto request = receiveMessage(kSocket, path, ~std::uint64_t(0));
-  if (!request) return EXIT_FAILURE;
-  answer(*request, path);
+  if (request != AssimpMessage::read) return EXIT_FAILURE;
+  answer(path);
   std::_Exit(EXIT_SUCCESS);  // the memory of a large scene need not be taken apart
 }

@@ -35,13 +35,13 @@ constexpr std::array kFormats = {
     Format{".ply", loadPly},           Format{".vtk", loadVtk, Up::z},
     Format{".vtp", loadVtkXml, Up::z}, Format{".vtu", loadVtkXml, Up::z},
     Format{".dae", loadAssimp},        Format{".fbx", loadAssimp},
-    Format{".3ds", loadAssimp},        Format{".x3d", loadAssimp},
-    Format{".wrl", loadAssimp},        Format{".ifc", loadAssimp},
-    Format{".off", loadOff},           Format{".3mf", load3mf, Up::z},
-    Format{".ac", loadAssimp},         Format{".acc", loadAssimp},
-    Format{".lwo", loadAssimp},        Format{".dxf", loadAssimp, Up::z},
-    Format{".ms3d", loadAssimp},       Format{".b3d", loadAssimp},
+    Format{".3ds", loadAssimp},        Format{".ifc", loadAssimp},
+    Format{".dxf", loadAssimp, Up::z}, Format{".off", loadOff},
+    Format{".3mf", load3mf, Up::z},
 };
+
+/// Formats that a converter reads.
+constexpr std::array kConvertible = {".x3d", ".wrl", ".ac", ".acc", ".lwo", ".ms3d", ".b3d"};
 
 Scene readByExtension(const std::string& path, const SceneOptions& options) {
   requireFile(path);
@@ -55,6 +55,12 @@ Scene readByExtension(const std::string& path, const SceneOptions& options) {
   if (extension == ".gz") {
     throw InputError(
         fmt::format("{0}: is packed by gzip; unpack it first: gunzip --keep '{0}'", path));
+  }
+  if (std::ranges::find(kConvertible, extension) != kConvertible.end()) {
+    throw InputError(
+        fmt::format("{0}: {1} is not read; convert it first, by Blender or by assimp-utils: assimp "
+                    "export '{0}' '{2}.glb'",
+                    path, extension, path.substr(0, path.size() - extension.size())));
   }
   throw InputError(fmt::format(
       "{}: {} is not a scene format this program reads; export it as one "

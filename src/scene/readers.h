@@ -40,7 +40,7 @@ Scene loadOff(const std::string& path, const SceneOptions& options);
 /// 3MF; scene.unit as the file names it, overrides not yet applied.
 Scene load3mf(const std::string& path, const SceneOptions& options);
 
-/// Collada, FBX, 3DS, X3D, IFC by Assimp; Collada, FBX and IFC in metres, else file units,
+/// Collada, FBX, 3DS, IFC, DXF by Assimp; Collada, FBX and IFC in metres, else file units,
 /// overrides not yet applied.
 Scene loadAssimp(const std::string& path, const SceneOptions& options);
 

@@ -66,8 +66,11 @@ class Install(unittest.TestCase):
             version = run(str(root / "prefix/bin/radiosity"), "--version")
             self.assertIn("0.1.0", version)
             # Assimp's formats take a program beside the library.
-            (root / "a.x3d").write_text("<X3D><Scene><Shape><Box/></Shape></Scene></X3D>")
-            self.assertIn("6 faces", run(str(root / "prefix/bin/radiosity"), "info", str(root / "a.x3d")))
+            groups = ["0", "SECTION", "2", "ENTITIES", "0", "3DFACE", "8", "roof"]
+            for k, (x, y) in enumerate(["00", "10", "11", "01"]):
+                groups += [f"1{k}", x, f"2{k}", y, f"3{k}", "2"]
+            (root / "a.dxf").write_text("\n".join([*groups, "0", "ENDSEC", "0", "EOF", ""]))
+            self.assertIn("1 face", run(str(root / "prefix/bin/radiosity"), "info", str(root / "a.dxf")))
             # Pictures take a library that the program opens only now.
             picture = f"{ROOT}/data/cornell-box.png"
             same = run(str(root / "prefix/bin/radiosity"), "compare", picture, picture)

@@ -12,15 +12,13 @@ import numpy as np
 from cli_runner import PROGRAM, CliTest
 
 MODELS = Path("/usr/share/assimp/models")
-READ = {".obj", ".gltf", ".glb", ".stl", ".ply", ".off", ".dae", ".fbx", ".3ds", ".x3d", ".ifc",
-        ".3mf", ".ac", ".acc", ".lwo", ".dxf", ".ms3d", ".b3d"}
+READ = {".obj", ".gltf", ".glb", ".stl", ".ply", ".off", ".dae", ".fbx", ".3ds", ".ifc", ".3mf", ".dxf"}
 
 # A few of each format, of at most some thousand faces: spiders, a duck, a rock, boxes.
 MESHED = [
     "OBJ/spider.obj", "OBJ/concave_polygon.obj", "OFF/Wuson.off", "STL/Spider_binary.stl",
-    "PLY/cube.ply", "3DS/fels.3ds", "3MF/box.3mf", "Collada/duck.dae", "FBX/spider.fbx", "X3D/HelloX3dTrademark.x3d",
+    "PLY/cube.ply", "3DS/fels.3ds", "3MF/box.3mf", "Collada/duck.dae", "FBX/spider.fbx", "DXF/wuson.dxf",
     "glTF2/BoxTextured-glTF-Embedded/BoxTextured.gltf", "glTF2/textureTransform/TextureTransformTest.gltf",
-    "AC/SphereWithLight.ac", "LWO/LWO2/boxuv.lwo", "DXF/wuson.dxf", "MS3D/jeep1.ms3d", "B3D/WusonBlitz.b3d",
 ]
 
 
@@ -42,14 +40,14 @@ class ModelsOfOthersTest(CliTest):
         # 112 of 158 in Debian 12; the others are of glTF 1, broken on purpose, or points alone.
         self.assertGreater(read, len(models) // 2)
 
-    def test_a_file_at_which_assimp_aborts_is_refused_in_a_line(self):
-        """A byte before the name of a sub-chunk, which makes one of an absurd size: an assertion fails."""
-        broken = bytearray((MODELS / "LWO/LWO2/box_2uv_1unused.lwo").read_bytes())
-        broken[981:984] = b"\x58\x05\x41"
-        (self.folder / "a.lwo").write_bytes(broken)
-        self.assertEqual(self.refuse("info", "a.lwo"),
-                         "radiosity: a.lwo: is damaged: Assimp, the library that reads this format, gave up; "
-                         "export it again, or save it as glTF or OBJ")
+    def test_a_file_at_which_assimp_takes_all_memory_is_refused_in_a_line(self):
+        """A byte of a count."""
+        broken = bytearray((MODELS / "3DS/test1.3ds").read_bytes())
+        broken[10555] = 106
+        (self.folder / "a.3ds").write_bytes(broken)
+        self.assertEqual(self.refuse("info", "a.3ds"),
+                         "radiosity: a.3ds: needs far more memory than its size explains: Assimp, the library that "
+                         "reads this format, gave up; export it again, or save it as glTF or OBJ")
 
     def test_a_building_has_its_names_materials_and_metres(self):
         file = MODELS / "IFC/AC14-FZK-Haus.ifc"

@@ -1,4 +1,4 @@
-"""OFF, and what Assimp reads: Collada, FBX, 3DS, X3D, AC3D and DXF, with their names, colours and units."""
+"""OFF, and what Assimp reads: Collada, FBX, 3DS and DXF, with their names, colours and units."""
 
 import math
 import os
@@ -16,38 +16,10 @@ from PIL import Image
 
 from cli_runner import PROGRAM, CliTest
 
-AC3D = """AC3Db
-MATERIAL "paint" rgb 1 1 1  amb 0.2 0.2 0.2  emis 0 0 0  spec 0 0 0  shi 10  trans 0
-OBJECT world
-kids 1
-OBJECT poly
-name "wall"
-texture "paint.rgb"
-numvert 4
-0 0 0
-1 0 0
-1 1 0
-0 1 0
-numsurf 1
-SURF 0x20
-mat 0
-refs 4
-0 0 0
-1 1 0
-2 1 1
-3 0 1
-kids 0
-"""
-
 # A face of one metre above the plane x, y; what follows a number is a group code's value.
 DXF = "\n".join(["0", "SECTION", "2", "ENTITIES", "0", "3DFACE", "8", "roof"] +
                 [word for k, (x, y) in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)])
                  for word in (f"1{k}", str(x), f"2{k}", str(y), f"3{k}", "2")] + ["0", "ENDSEC", "0", "EOF", ""])
-
-
-def sgi(colour):
-    """One texel of a Silicon Graphics image (.rgb), plane by plane."""
-    return struct.pack(">hbbHHHHII", 474, 0, 1, 3, 1, 1, 3, 0, 255).ljust(512, b"\0") + bytes(colour)
 
 
 SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
@@ -91,13 +63,6 @@ TEXTURED = (COLLADA
 input_set="0"/></instance_material>""").replace("</instance_material></instance_material>", "</instance_material>")
     .replace("</visual_scene>", """<node id="cam" name="above"><translate>50 50 300</translate>
 <instance_camera url="#c"/></node></visual_scene>"""))
-
-X3D = """<?xml version="1.0"?>
-<X3D version="3.0"><Scene><Transform DEF="wall" translation="0 0 1"><Shape>
-<Appearance><Material diffuseColor="0.25 0.5 0.75" emissiveColor="2 1 0"/></Appearance>
-<IndexedFaceSet coordIndex="0 1 2 3 -1"><Coordinate point="0 0 0 1 0 0 1 1 0 0 1 0"/></IndexedFaceSet>
-</Shape></Transform></Scene></X3D>
-"""
 
 FBX = """; FBX 7.3.0 project file
 FBXHeaderExtension:  {
@@ -238,86 +203,6 @@ class OtherFormats(CliTest):
         self.says(": no faces; export the scene with its meshes as polygons", "a.dae",
                   TEXTURED.replace(geometry + "</instance_geometry>", ""))
 
-    def test_x3d_copies_are_all_there(self):
-        """Assimp keeps one of three, and gives the one without Appearance the first one's."""
-        shape = X3D[X3D.index("<Shape>"):X3D.index("</Transform>")].replace("<Shape>", '<Shape DEF="plate">')
-        faces = shape[shape.index("<IndexedFaceSet"):shape.index("</Shape>")]
-        self.put("a.x3d", f"""<X3D><Scene>{shape}<Transform translation="0 0 1"><Shape USE="plate"/></Transform>
-<Anchor><Transform translation="0 0 2" scale="2 1 1"><Shape USE="plate"/></Transform></Anchor>
-<Transform translation="0 0 3"><Shape DEF="bare">{faces.replace("<IndexedFaceSet", '<IndexedFaceSet solid="false"')}
-</Shape></Transform><Shape><Text string="x"/></Shape></Scene></X3D>""")
-        scene = self.report("info", "a.x3d")["scene"]
-        areas = {}
-        for surface in scene["surfaces"]:
-            name = surface["name"].split("/")[0]
-            areas[name] = areas.get(name, 0) + surface["area_m2"]
-        self.assertEqual(areas, {"plate": 4, "bare": 1})
-        material = {m["name"]: m for m in scene["materials"]}
-        bare = material[next(s["material"] for s in scene["surfaces"] if s["name"].startswith("bare"))]
-        self.assertEqual([bare["reflectance"], bare["sides"]], ["0.5, 0.5, 0.5", "two"])
-        self.assertIn("shapes of X3D that are not read: Text", self.run_program("info", "a.x3d").err)
-
-    def test_x3d_cones_cylinders_and_clockwise_faces_are_turned_outward(self):
-        side = 2 * 32 * math.sin(math.pi / 32)  # of the regular polygon of 32 corners in the unit circle
-        base = 16 * math.sin(math.pi / 16)
-        slant = math.hypot(2, math.cos(math.pi / 32))
-        for geometry, area in [("<Cylinder/>", 2 * side + 2 * base), ("<Cone/>", side * slant / 2 + base),
-                               ('<Cylinder bottom="false" height="1"/>', side + base)]:
-            with self.subTest(geometry=geometry):
-                self.put("a.x3d", f"<X3D><Scene><Shape>{geometry}</Shape></Scene></X3D>")
-                run = self.run_program("info", "a.x3d")
-                self.assertNotIn("turn their backs", run.err)
-                scene = self.report("info", "a.x3d")["scene"]
-                self.assertAlmostEqual(scene["surfaces"][0]["area_m2"], area, delta=1e-4)  # six figures
-                self.assertEqual(scene["watertight"], "bottom" not in geometry)
-        for ccw, front in [("true", 1), ("false", -1)]:
-            self.put("a.x3d", X3D.replace("<IndexedFaceSet", f'<IndexedFaceSet ccw="{ccw}"'))
-            self.run_program("mesh", "a.x3d", "--patches", "1", "-o", "m.obj")
-            words = [line.split() for line in (self.folder / "m.obj").read_text().splitlines()]
-            points = [np.array(w[1:4], float) for w in words if w[:1] == ["v"]]
-            face = next([points[int(c.split("/")[0]) - 1] for c in w[1:]] for w in words if w[:1] == ["f"])
-            self.assertEqual(np.sign(np.cross(face[1] - face[0], face[2] - face[0])[2]), front)
-
-    def test_x3d_viewpoints_and_units(self):
-        self.put("a.x3d", X3D.replace("<Scene>", """<head><unit category="length" conversionFactor="0.01"/></head><Scene>
-<Transform translation="0 0 100" rotation="0 1 0 1.5707963267949">
-<Viewpoint DEF="side" position="0 0 300" fieldOfView="0.5"/></Transform>"""))
-        scene = self.report("info", "a.x3d")["scene"]
-        self.assertAlmostEqual(scene["surfaces"][0]["area_m2"], 1e-4, 10)
-        camera = scene["cameras"][0]
-        self.assertEqual(camera["name"], "side")
-        np.testing.assert_allclose(np.array(camera["eye_m"].split(", "), float), [3, 0, 1], atol=1e-6)
-        np.testing.assert_allclose(np.array(camera["target_m"].split(", "), float), [2, 0, 1], atol=1e-6)
-        self.assertAlmostEqual(float(camera["fov_deg"]), math.degrees(.5), 3)
-
-    def test_x3d_groups_without_shapes(self):
-        """Assimp crashes at empty groups and names, and fails at sets without corners and at unknown elements."""
-        for empty in ["<Group/>", "<Transform><Group> </Group></Transform>", '<Group DEF="g"/><Group USE="g"/>',
-                      "<Switch/>", "<Anchor/>", '<Group DEF=""><Shape DEF="" USE=""/></Group>', "<Group><Shape><Text/></Shape></Group>", "<Unknown/>",
-                      "<Shape><IndexedFaceSet><Coordinate/></IndexedFaceSet></Shape>",
-                      '<Shape><IndexedFaceSet coordIndex="0 1 2 -1"><Color color="1 0 0"/></IndexedFaceSet></Shape>']:
-            with self.subTest(empty=empty):
-                surface, _ = self.only_surface("a.x3d", X3D.replace("</Scene>", empty + "</Scene>"))
-                self.assertEqual([surface["name"], surface["area_m2"]], ["wall/material 0", 1])
-                self.assertIn(": no faces", self.refuse("info", self.put("a.x3d", f"<X3D><Scene>{empty}</Scene></X3D>")))
-
-    def test_x3d_inline_is_read(self):
-        self.put("inner.x3d", X3D)
-        outer = '<X3D><Scene><Transform translation="5 0 0"><Inline url="inner.x3d"/></Transform></Scene></X3D>'
-        surface, _ = self.only_surface("a.x3d", outer)
-        self.assertEqual(surface["area_m2"], 1)
-        # The first of several places counts.
-        several = outer.replace('"inner.x3d"', """'"inner.x3d" "http://b/inner.x3d"'""")
-        self.assertEqual(self.only_surface("a.x3d", several)[0]["area_m2"], 1)
-        self.says(": is in itself (Inline); take the reference out", "a.x3d", outer.replace("inner", "a"))
-        self.assertEqual(self.refuse("info", self.put("a.x3d", outer.replace("inner", "gone"))),
-                         "radiosity: gone.x3d: no such file; check the name and the folder")
-
-    def test_x3d_is_read(self):
-        surface, material = self.only_surface("a.x3d", X3D)
-        self.assertEqual([surface["faces"], surface["area_m2"]], [1, 1])
-        self.assertEqual([material["reflectance"], material["radiance_W_per_m2_sr"]], ["0.25, 0.5, 0.75", "2, 1, 0"])
-
     def test_3ds(self):
         surface, material = self.only_surface("a.3ds", three_ds())
         self.assertEqual([surface["name"], surface["faces"], surface["area_m2"]], ["wall/paint", 2, 1])
@@ -325,37 +210,6 @@ class OtherFormats(CliTest):
         self.says(f": is cut off: it says that it has {len(three_ds())} bytes and has {len(three_ds()) - 9}; export "
                   "it again", "a.3ds", three_ds()[:-9])
         self.says(": is no 3DS file; export it again", "a.3ds", "hello world")
-
-    def test_ac3d(self):
-        """A texture of an .rgb file replaces the colour; without it a white colour was not meant."""
-        surface, material = self.only_surface("a.ac", AC3D)
-        self.assertEqual([surface["name"], surface["faces"], surface["area_m2"]], ["wall/paint", 1, 1])
-        self.assertEqual(material["reflectance"], "0.5, 0.5, 0.5")
-        run = self.run_program("info", "a.ac")
-        self.assertIn("textures that are not there; the colour alone counts, material: paint (paint.rgb)", run.err)
-        self.assertIn("colour is 1 beside a texture that is not used: reflectance 0.5, material: paint", run.err)
-        self.assertIn("faces that are two-sided in the file are read one-sided (1); use --two-sided NAME where backs "
-                      "are seen", run.out)
-        (self.folder / "paint.rgb").write_bytes(sgi([255, 0, 255]))
-        surface, material = self.only_surface("a.ac", AC3D.replace("SURF 0x20", "SURF 0x10"))
-        self.assertEqual([material["reflectance"], material["texture"]], ["1, 1, 1", "paint.rgb"])
-        self.run_program("solve", "a.ac", "--patches", "1", "-o", "r.h5")
-        with h5py.File(self.folder / "r.h5") as results:
-            np.testing.assert_array_equal(results["solution/reflectance"], [[1, 0, 1]])
-        self.assertNotIn("two-sided", self.run_program("info", "a.ac").out)
-
-    def test_ac3d_of_racing_tracks(self):
-        """An object of TORCS has four layers of textures, and may have strips without any area alone."""
-        (self.folder / "paint.rgb").write_bytes(sgi([255, 0, 255]))
-        layers = 'texture "paint.rgb" base\ntexture "shadow.rgb" tiled\ntexture empty_texture_no_mapping skids\n'
-        track = AC3D.replace('texture "paint.rgb"\n', layers).replace("SURF 0x20", "SURF 0x10")
-        flat = track[track.index("OBJECT poly"):track.index("0 0 0\n1 1 0\n2")]
-        flat = flat.replace("wall", "sliver").replace("SURF 0x10", "SURF 0x14") + "0 0 0\n" * 4 + "kids 0\n"
-        surface, material = self.only_surface("a.acc", track.replace("kids 1", "kids 2") + flat)
-        self.assertEqual([surface["name"], surface["faces"], material["texture"]], ["wall/paint", 1, "paint.rgb"])
-        run = self.run_program("info", "a.acc")
-        self.assertIn("layers of textures other than the base are not used, texture: shadow.rgb", run.err)
-        self.assertIn("shapes without corners are left out: sliver", run.out)
 
     def test_dxf_is_read(self):
         """Up is z in drawings."""
@@ -387,20 +241,20 @@ class OtherFormats(CliTest):
         self.says(": is a cloud of 4 points without faces; make a surface of it first (in MeshLab: Filters, "
                   "Remeshing, Surface Reconstruction)", "a.off", OFF[:OFF.index("3 0 1 2")].replace("4 2 0", "4 0 0"))
 
+    def test_formats_for_converters_are_refused_with_the_command(self):
+        for ending in [".x3d", ".wrl", ".ac", ".acc", ".lwo", ".ms3d", ".B3D"]:
+            self.says(f": {ending.lower()} is not read; convert it first, by Blender or by assimp-utils: "
+                      f"assimp export 'a{ending}' 'a.glb'", "a" + ending, "x")
+
     def test_files_that_refer_to_themselves_are_refused(self):
         copy = '<instance_geometry url="#plate">'
         self.says(": <node> `wall` refers to itself; take the reference out", "a.dae",
                   COLLADA.replace(copy, '<instance_node url="#wall"/>' + copy))
-        shape = '<Transform DEF="A"><Shape><Sphere/></Shape><Transform USE="A"/></Transform>'
-        self.says(": <Transform> `A` refers to itself; take the reference out", "a.x3d",
-                  f"<X3D><Scene>{shape}</Scene></X3D>")
 
     def test_elements_without_end_are_refused(self):
         deep = "is nested more than 200 deep, references included; export it again, or as .glb"
-        for name, before, tag, after in [("a.x3d", "<X3D><Scene>", "Group", "</Scene></X3D>"),
-                                         ("a.dae", "<COLLADA><library_nodes>", "node", "</library_nodes></COLLADA>")]:
-            nested = f"<{tag}>" * 20000 + f"</{tag}>" * 20000
-            self.says(f": <{tag}> {deep}", name, before + nested + after)
+        nested = "<node>" * 20000 + "</node>" * 20000
+        self.says(f": <node> {deep}", "a.dae", f"<COLLADA><library_nodes>{nested}</library_nodes></COLLADA>")
         nodes = '<node id="n0"/>'
         chain = nodes + "".join(f'<node id="n{k}"><instance_node url="#n{k - 1}"/></node>' for k in range(1, 200))
         self.says(f": <node> {deep}", "a.dae", f"<COLLADA><library_nodes>{chain}</library_nodes></COLLADA>")
@@ -411,11 +265,6 @@ class OtherFormats(CliTest):
 
     def test_deep_nesting_is_refused_before_assimp_reads_it(self):
         deep = "are nested more than 1000 deep; export it again, or as .glb"
-        self.says(f": objects {deep}", "a.ac", "AC3Db\n" + "OBJECT group\nkids 1\n" * 20000 + "OBJECT poly\nkids 0\n")
-        nodes = b""
-        for _ in range(2000):
-            nodes = b"NODE" + struct.pack("<I", 41 + len(nodes)) + b"n\0" + bytes(39) + nodes
-        self.says(f": nodes {deep}", "a.b3d", b"BB3D" + struct.pack("<II", 4 + len(nodes), 1) + nodes)
         self.says(f": its parts {deep}", "a.fbx", FBX + "A: {" * 20000)
 
         def fbx(models, pairs):
@@ -442,8 +291,8 @@ class OtherFormats(CliTest):
                   COLLADA.replace("<p>0 1 2 3</p>", "<p>0 1 inf 3</p>"))
 
     def test_broken_files_of_assimp_are_one_line(self):
-        for name, content in [("a.dae", COLLADA[:900]), ("a.x3d", X3D[:200]), ("a.fbx", FBX[:300]), ("a.dae", "hello"),
-                              ("a.x3d", "<X3D/>"), ("a.fbx", b"Kaydara FBX Binary  \0\x1a\0\xff\xff\xff\xff")]:
+        for name, content in [("a.dae", COLLADA[:900]), ("a.fbx", FBX[:300]), ("a.dae", "hello"),
+                              ("a.fbx", b"Kaydara FBX Binary  \0\x1a\0\xff\xff\xff\xff")]:
             with self.subTest(name=name):
                 self.refuse("info", self.put(name, content), words=[f"radiosity: {name}: "])
 

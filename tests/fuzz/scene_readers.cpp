@@ -11,10 +11,8 @@
 #include "base/parse.h"
 #include "fuzz/readers.h"
 #include "radiosity/scene.h"
-#include "scene/assimp/ac3d_document.h"
+#include "scene/assimp/collada_cameras.h"
 #include "scene/assimp/nesting_preflight.h"
-#include "scene/assimp/vrml_document.h"
-#include "scene/assimp/x3d_document.h"
 #include "scene/assimp/xml_preflight.h"
 #include "scene/json_scan.h"
 #include "scene/load_scene.h"
@@ -40,39 +38,15 @@ void readMtl(std::string_view bytes) {
   });
 }
 
-/// What is done to VRML and X3D before Assimp has them.
-void rewrite(pugi::xml_document document) {
-  std::vector<X3dShape> shapes;
-  FeatureNotes notes;
-  if (!document.empty()) rewriteX3d(document, shapes, notes);
-}
-
-void readX3d(std::string_view bytes) {
-  withFile(bytes, ".x3d", [](const std::string& path) { rewrite(checkXml(path)); });
-}
-
-void readWrl(std::string_view bytes) {
-  withFile(bytes, ".wrl", [](const std::string& path) {
+/// What is done to Collada before Assimp has it.
+void readDae(std::string_view bytes) {
+  withFile(bytes, ".dae", [](const std::string& path) {
     FeatureNotes notes;
-    pugi::xml_document document = readVrml(path, notes);
-    if (!document.empty()) checkXml(path, document);
-    rewrite(std::move(document));
+    ColladaCameras(checkXml(path), notes);
   });
 }
 
-void readAc3d(std::string_view bytes) {
-  const std::string content(bytes);
-  checkAc3dNesting("a.ac", content);
-  FeatureNotes notes;
-  rewriteAc3d(content, notes);
-  twoSidedFacesOfAc3d(content);
-}
-
-void readNesting(std::string_view bytes) {
-  const std::string content(bytes);
-  checkFbxNesting("a.fbx", content);
-  checkBlitz3dNesting("a.b3d", content);
-}
+void readNesting(std::string_view bytes) { checkFbxNesting("a.fbx", bytes); }
 
 void readPattern(std::string_view bytes) {
   const std::vector<std::string_view> lines = splitAt(bytes, '\n');
@@ -97,9 +71,7 @@ std::span<const FuzzReader> sceneReaders() {
       sceneReader("vtk", ".vtk"),
       sceneReader("vtu", ".vtu"),
       sceneReader("3mf", ".3mf"),
-      FuzzReader{"x3d", readX3d},
-      FuzzReader{"vrml", readWrl},
-      FuzzReader{"ac3d", readAc3d},
+      FuzzReader{"dae", readDae},
       FuzzReader{"nesting", readNesting},
       FuzzReader{"csv", [](std::string_view bytes) { parseCsv("a.csv", bytes); }},
       FuzzReader{"camera", [](std::string_view bytes) { readCamera(bytes, ';'); }},

@@ -14,13 +14,6 @@
 
 #include "radiosity/base.h"
 
-#ifdef __SANITIZE_ADDRESS__
-/// HDF5 and OpenImageIO (a string, past a longjmp of libpng) leak memory on damaged files;
-/// that is not ours to mend.
-extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\nleak:_M_assign\n"; }
-#endif
-
 namespace radiosity {
 
 class FolderTest : public ::testing::Test {

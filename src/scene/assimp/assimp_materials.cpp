@@ -22,18 +22,14 @@ namespace {
 
 class AssimpMaterialReader {
  public:
-  AssimpMaterialReader(const AssimpScene& file, const std::map<unsigned, std::string>& names,
-                       const SceneOptions& options, Scene& scene, FeatureNotes& ignored)
-      : file_(file), known_names_(names), options_(options), scene_(scene), ignored_(ignored) {}
+  AssimpMaterialReader(const AssimpScene& file, const SceneOptions& options, Scene& scene,
+                       FeatureNotes& ignored)
+      : file_(file), options_(options), scene_(scene), ignored_(ignored) {}
 
   std::vector<AssimpMaterial> read() {
     std::vector<AssimpMaterial> all;
     for (unsigned m = 0; m < file_.materials.size(); ++m) {
-      if (!known_names_.empty() && !known_names_.contains(m)) {
-        all.push_back({kNone, false});
-        continue;
-      }
-      const std::string name = nameOf(file_.materials[m], m);
+      const std::string& name = file_.materials[m].name;
       const Index index = added(name, convert(file_.materials[m], m, name));
       all.push_back({index, has_colour_});
     }
@@ -41,7 +37,6 @@ class AssimpMaterialReader {
   }
 
  private:
-  std::string nameOf(const AssimpFileMaterial& given, unsigned number) const;
   Material convert(const AssimpFileMaterial& given, unsigned number, std::string name);
   Index added(const std::string& name, Material material);
   Index texture(const AssimpFileMaterial& given, const std::string& material);
@@ -49,7 +44,6 @@ class AssimpMaterialReader {
   TextureResult readImage(const AssimpTexture& texture);
 
   const AssimpScene& file_;
-  const std::map<unsigned, std::string>& known_names_;  ///< by number
   const SceneOptions& options_;
   Scene& scene_;
   FeatureNotes& ignored_;
@@ -63,13 +57,6 @@ Vec3 colourOr(const std::optional<std::array<float, 3>>& given, const Vec3& othe
   if (!given) return otherwise;
   const auto& [red, green, blue] = *given;
   return Vec3(double(red), double(green), double(blue));
-}
-
-/// The name in the file, or nothing.
-std::string AssimpMaterialReader::nameOf(const AssimpFileMaterial& given, unsigned number) const {
-  const auto known = known_names_.find(number);
-  if (known != known_names_.end()) return known->second;
-  return given.name;
 }
 
 Material AssimpMaterialReader::convert(const AssimpFileMaterial& given, unsigned number,
@@ -193,10 +180,9 @@ TextureResult AssimpMaterialReader::readImage(const AssimpTexture& texture) {
 }  // namespace
 
 std::vector<AssimpMaterial> readAssimpMaterials(const AssimpScene& file,
-                                                const std::map<unsigned, std::string>& names,
                                                 const SceneOptions& options, Scene& scene,
                                                 FeatureNotes& ignored) {
-  return AssimpMaterialReader(file, names, options, scene, ignored).read();
+  return AssimpMaterialReader(file, options, scene, ignored).read();
 }
 
 }  // namespace radiosity

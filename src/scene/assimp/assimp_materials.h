@@ -1,8 +1,6 @@
 // Reads the materials of Assimp's files, with the textures of their diffuse colours.
 #pragma once
 
-#include <map>
-#include <string>
 #include <vector>
 
 #include "radiosity/scene.h"
@@ -18,13 +16,10 @@ struct AssimpMaterial {
 };
 
 /// Adds all materials to `scene` and returns the scene's material of each, in the file's order.
-/// `names`: if there are any, the names of the materials to be read, by number, instead of the
-/// file's own; the index of others is kNone. Materials of one name, or without
-/// one, are one if all properties that we use are equal. Unused properties go to `ignored`. Diffuse
-/// and emissive colours are read as in an MTL file; the reflectance is the colour's, also beside a
-/// texture. Errors: InputError naming the material.
+/// Materials of one name, or without one, are one if all properties that we use are equal. Unused
+/// properties go to `ignored`. Diffuse and emissive colours are read as in an MTL file; the
+/// reflectance is the colour's, also beside a texture. Errors: InputError naming the material.
 std::vector<AssimpMaterial> readAssimpMaterials(const AssimpScene& file,
-                                                const std::map<unsigned, std::string>& names,
                                                 const SceneOptions& options, Scene& scene,
                                                 FeatureNotes& ignored);
 

@@ -13,15 +13,9 @@
 namespace radiosity {
 
 enum class AssimpMessage : std::uint8_t {
-  read_itself,           ///< to it: the path of the scene, which it opens
-  read_given,            ///< to it: the same; it asks for the content of each file that it opens
-  read_given_unchecked,  ///< the same; Assimp does not check the whole
-  open,                  ///< from it: the path of a file
-  content,               ///< to it: the content
-  no_content,            ///< to it: there is none
-  scene,                 ///< from it: the scene (assimp_scene.h)
-  cannot_read,           ///< from it: Assimp's words
-  refused                ///< from it: our words about the files
+  read,        ///< to it: the path of the scene
+  scene,       ///< from it: the scene (assimp_scene.h)
+  cannot_read  ///< from it: Assimp's words
 };
 
 /// How it ends if memory is short.

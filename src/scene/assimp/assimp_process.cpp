@@ -12,9 +12,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <exception>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "base/side_library.h"
 #include "radiosity/base.h"
@@ -163,36 +163,16 @@ std::optional<AssimpScene> sceneOf(const std::string& bytes) {
 
 }  // namespace
 
-AssimpAnswer readByAssimp(const std::string& file, const AssimpRequest& request) {
+AssimpAnswer readByAssimp(const std::string& file) {
   AssimpProcess process;
-  const AssimpMessage kind = !request.content  ? AssimpMessage::read_itself
-                             : request.checked ? AssimpMessage::read_given
-                                               : AssimpMessage::read_given_unchecked;
-  sendMessage(process.socket(), kind, request.path);
-  std::exception_ptr failed;
+  sendMessage(process.socket(), AssimpMessage::read, file);
   std::string bytes;
   constexpr std::uint64_t kMost = std::uint64_t(1) << 40;  // it may hold far less memory
-  for (;;) {
-    const std::optional<AssimpMessage> message = receiveMessage(process.socket(), bytes, kMost);
-    if (!message) break;
-    const AssimpMessage answer = *message;
-    if (answer == AssimpMessage::open && request.content) {
-      try {
-        sendMessage(process.socket(), AssimpMessage::content, request.content(bytes));
-      } catch (...) {
-        if (!failed) failed = std::current_exception();
-        sendMessage(process.socket(), AssimpMessage::no_content, "");
-      }
-      continue;
-    }
-    if (answer == AssimpMessage::refused && failed) std::rethrow_exception(failed);
-    if (answer == AssimpMessage::refused) throw InputError(bytes);
-    if (answer == AssimpMessage::cannot_read) return {{}, bytes.empty() ? "no reason" : bytes};
-    if (answer != AssimpMessage::scene) break;
+  const auto answer = receiveMessage(process.socket(), bytes, kMost);
+  if (answer == AssimpMessage::cannot_read) return {{}, bytes.empty() ? "no reason" : bytes};
+  if (answer == AssimpMessage::scene) {
     if (auto scene = sceneOf(bytes)) return {std::move(*scene), ""};
-    break;
   }
-  if (failed) std::rethrow_exception(failed);
   failAtEnd(file, process.wait());
 }
 

@@ -2,27 +2,19 @@
 // memory there is.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "scene/assimp/assimp_scene.h"
 
 namespace radiosity {
 
-struct AssimpRequest {
-  std::string path;
-  /// Returns the content of a path that Assimp opens. If empty, Assimp opens `path` itself.
-  std::function<std::string(const std::string&)> content;
-  bool checked = true;  ///< by Assimp, as a whole
-};
-
 struct AssimpAnswer {
   AssimpScene scene;  ///< its indices are in range
   std::string why;    ///< if it is not empty, why Assimp cannot read the file
 };
 
-/// Errors: InputError naming `file` if the process ends before it answers, by a fault or a limit,
-/// and what `content` throws; RunError if it cannot be started; Cancelled if a person ended it.
-AssimpAnswer readByAssimp(const std::string& file, const AssimpRequest& request);
+/// Errors: InputError naming `file` if the process ends before it answers, by a fault or a limit;
+/// RunError if it cannot be started; Cancelled if a person ended it.
+AssimpAnswer readByAssimp(const std::string& file);
 
 }  // namespace radiosity

@@ -1,31 +1,25 @@
-// Reads Collada, FBX, 3DS, X3D, VRML, IFC, AC3D, LightWave, DXF, MilkShape and Blitz3D by Assimp.
-// Nodes are objects.
+// Reads Collada, FBX, 3DS, IFC and DXF by Assimp. Nodes are objects.
 #include <assimp/types.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <glm/geometric.hpp>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <sstream>
 #include <string_view>
 
 #include "base/file_name.h"
 #include "base/finite.h"
 #include "base/input_file.h"
-#include "scene/assimp/ac3d_document.h"
 #include "scene/assimp/assimp_materials.h"
 #include "scene/assimp/assimp_process.h"
 #include "scene/assimp/assimp_scene.h"
 #include "scene/assimp/collada_cameras.h"
 #include "scene/assimp/nesting_preflight.h"
-#include "scene/assimp/vrml_document.h"
-#include "scene/assimp/x3d_document.h"
 #include "scene/assimp/xml_preflight.h"
 #include "scene/mesh_cursor.h"
 #include "scene/readers.h"
@@ -46,27 +40,14 @@ class AssimpReader {
   Scene read() {
     const std::string extension = lowerExtension(scene_.file);
     if (extension == ".dae") collada_.emplace(checkXml(scene_.file), notes_);
-    const bool is_vrml = extension == ".wrl";
-    const bool is_ac3d = extension.starts_with(".ac");
-    AssimpRequest request{scene_.file, {}, !is_ac3d};
-    if (is_vrml) request.path += ".x3d";
-    if (is_ac3d) request.content = [this](const std::string& path) { return rewrittenAc3d(path); };
-    if (is_vrml || extension == ".x3d") {
-      request.content = [this](const std::string& path) { return rewrittenX3d(path); };
-    }
-    const auto [file, why] = readByAssimp(scene_.file, request);
+    const auto [file, why] = readByAssimp(scene_.file);
     if (!why.empty()) {
       if (why.find("mNumMeshes is 0") != std::string::npos) failWithoutFaces();
       fail(fmt::format("cannot be read ({}); export it again, or as .obj or .glb", onOneLine(why)));
     }
-    materials_ = readAssimpMaterials(file, x3dMaterials(file), options_, scene_, notes_);
-    scale_ = x3d_.metres_per_unit * file.centimetres.value_or(100) / 100;
+    materials_ = readAssimpMaterials(file, options_, scene_, notes_);
+    scale_ = file.centimetres.value_or(100) / 100;
     addNodes(file);
-    for (Camera viewpoint : x3d_.viewpoints) {
-      const Vec3 forward = viewpoint.target - viewpoint.eye;
-      viewpoint.eye *= scale_;
-      addCamera(viewpoint, forward);
-    }
     if (scene_.faceCount() == 0) failWithoutFaces();
     if (file.lights > 0) {
       scene_.notes.push_back({Severity::warning,
@@ -88,27 +69,15 @@ class AssimpReader {
   }
 
   [[noreturn]] void failWithoutFaces() const {
-    std::vector<Note> left_out;  // of other formats the notes are about parts that are read
-    const std::string extension = lowerExtension(scene_.file);
-    if (extension == ".x3d" || extension == ".wrl") notes_.appendTo(left_out);
-    fail(fmt::format("no faces{}; export the scene with its meshes as polygons",
-                     left_out.empty() ? "" : " (" + left_out.front().text + ")"));
+    fail("no faces; export the scene with its meshes as polygons");
   }
 
-  std::string rewrittenX3d(const std::string& path);
-  std::string rewrittenAc3d(const std::string& path);
-  const X3dShape* x3dShape(const AssimpNode& node) const;
-  std::map<unsigned, std::string> x3dMaterials(const AssimpScene& file) const;
   std::string objectName(const AssimpScene& file, const AssimpNode& node,
                          const AssimpMesh& mesh) const;
   void addNodes(const AssimpScene& file);
   std::vector<Vec3> coloursOf(const AssimpMesh& mesh, const std::string& object);
-  void addMesh(const AssimpMesh& mesh, const std::string& object, const X3dShape* shape,
-               const aiMatrix4x4& place);
-  Index twoSided(Index material);
+  void addMesh(const AssimpMesh& mesh, const std::string& object, const aiMatrix4x4& place);
   Index colouredByVertices(Index material);
-  Index variant(std::map<Index, Index>& known, Index material, const char* mark,
-                const std::function<void(Material&)>& change);
   void addCameras(const AssimpNode& node, const aiMatrix4x4& place);
   void addCamera(Camera camera, const Vec3& forward);
 
@@ -120,61 +89,12 @@ class AssimpReader {
   double scale_ = 1;
   std::multimap<std::string, const AssimpCamera*> camera_of_;  ///< by its node
   std::optional<ColladaCameras> collada_;                      ///< replaces camera_of_
-  X3dExtras x3d_;
-  std::vector<X3dShape> x3d_shapes_;
-  std::map<Index, Index> two_sided_;  ///< by material: the same for both sides
-  std::map<Index, Index> coloured_;   ///< by material: the same for colours of vertices
+  std::map<Index, Index> coloured_;  ///< by material: the same for colours of vertices
 };
-
-/// The rewritten X3D, or VRML as X3D. Of a file inside another (Inline) only the shapes count.
-std::string AssimpReader::rewrittenX3d(const std::string& path) {
-  if (lowerExtension(path) != ".x3d") return readWholeFile(path);
-  const std::string vrml = path.substr(0, path.size() - std::string_view(".x3d").size());
-  const bool is_vrml = lowerExtension(vrml) == ".wrl";
-  pugi::xml_document document = is_vrml ? readVrml(vrml, notes_) : checkXml(path);
-  if (document.empty()) return readWholeFile(path);
-  if (is_vrml) checkXml(vrml, document);
-  X3dExtras extras = rewriteX3d(document, x3d_shapes_, notes_);
-  if ((is_vrml ? vrml : path) == scene_.file) x3d_ = std::move(extras);
-  std::ostringstream out;
-  document.save(out, "", pugi::format_raw);
-  return out.str();
-}
-
-std::string AssimpReader::rewrittenAc3d(const std::string& path) {
-  const std::string content = readWholeFile(path);
-  checkAc3dNesting(path, content);
-  if (const std::size_t faces = twoSidedFacesOfAc3d(content); faces > 0) {
-    scene_.notes.push_back(
-        {Severity::info, fmt::format("faces that are two-sided in the file are read one-sided "
-                                     "({}); use --two-sided NAME where backs are seen",
-                                     faces)});
-  }
-  return rewriteAc3d(content, notes_);
-}
 
 /// Whether Assimp invented the name.
 bool isMadeUp(std::string_view name) {
   return name.empty() || name[0] == '<' || name.starts_with("$ColladaAutoName$");
-}
-
-/// The shape of X3D in a node, or null.
-const X3dShape* AssimpReader::x3dShape(const AssimpNode& node) const {
-  const std::optional<std::size_t> number = x3dShapeNumber(node.name);
-  return number && *number < x3d_shapes_.size() ? &x3d_shapes_[*number] : nullptr;
-}
-
-/// Names of the materials of X3D's meshes, by their numbers; nothing for other formats.
-std::map<unsigned, std::string> AssimpReader::x3dMaterials(const AssimpScene& file) const {
-  std::map<unsigned, std::string> names;
-  if (x3d_shapes_.empty()) return names;
-  for (const AssimpNode& node : file.nodes) {
-    const X3dShape* const shape = x3dShape(node);
-    for (const std::uint32_t mesh : node.meshes) {
-      names[file.meshes[mesh].material] = shape == nullptr ? "" : shape->material;
-    }
-  }
-  return names;
 }
 
 /// The name of an object. If an IFC file has an object in several places, such as a window, Assimp
@@ -182,9 +102,6 @@ std::map<unsigned, std::string> AssimpReader::x3dMaterials(const AssimpScene& fi
 std::string AssimpReader::objectName(const AssimpScene& file, const AssimpNode& node,
                                      const AssimpMesh& mesh) const {
   std::string of_file = std::filesystem::path(scene_.file).stem().string();
-  if (const X3dShape* const shape = x3dShape(node)) {
-    return shape->name.empty() ? of_file : shape->name;
-  }
   constexpr std::string_view kReference = "IfcMappedItem";
   const AssimpNode* named = &node;
   while (named != &file.nodes.front() && named->name == kReference) {
@@ -211,32 +128,19 @@ void AssimpReader::addNodes(const AssimpScene& file) {
     const aiMatrix4x4& place = places.emplace_back(above * matrixOf(node.place));
     for (const std::uint32_t m : node.meshes) {
       const AssimpMesh& mesh = file.meshes[m];
-      addMesh(mesh, objectName(file, node, mesh), x3dShape(node), place);
+      addMesh(mesh, objectName(file, node, mesh), place);
     }
     addCameras(node, place);
   }
 }
 
-Index AssimpReader::twoSided(Index material) {
-  if (scene_.materials[material].two_sided) return material;
-  const auto turn = [](Material& both) { both.two_sided = true; };
-  return variant(two_sided_, material, " (two-sided)", turn);
-}
-
-/// The same for a material without a colour: those of vertices are the reflectance.
+/// The material without a colour, for vertices whose colours are the reflectance.
 Index AssimpReader::colouredByVertices(Index material) {
-  const auto whiten = [](Material& coloured) { coloured.reflectance = Vec3(1.0); };
-  return variant(coloured_, material, " (vertex colours)", whiten);
-}
-
-/// A changed copy of a material, made once; `known`: those made so far.
-Index AssimpReader::variant(std::map<Index, Index>& known, Index material, const char* mark,
-                            const std::function<void(Material&)>& change) {
-  const auto [place, is_new] = known.emplace(material, Index(scene_.materials.size()));
+  const auto [place, is_new] = coloured_.emplace(material, Index(scene_.materials.size()));
   if (is_new) {
     Material copy = scene_.materials[material];
-    copy.name += mark;
-    change(copy);
+    copy.name += " (vertex colours)";
+    copy.reflectance = Vec3(1.0);
     scene_.materials.push_back(std::move(copy));
   }
   return place->second;
@@ -268,7 +172,7 @@ std::vector<Vec3> AssimpReader::coloursOf(const AssimpMesh& mesh, const std::str
   return factors;
 }
 
-void AssimpReader::addMesh(const AssimpMesh& mesh, const std::string& object, const X3dShape* shape,
+void AssimpReader::addMesh(const AssimpMesh& mesh, const std::string& object,
                            const aiMatrix4x4& place) {
   if (mesh.vertices.empty()) return notes_.add("shapes without corners are left out", object);
   const std::size_t first = scene_.vertices.size();
@@ -282,12 +186,10 @@ void AssimpReader::addMesh(const AssimpMesh& mesh, const std::string& object, co
   }
   const std::vector<Vec3> colours = coloursOf(mesh, object);
   const bool mirrors = place.Determinant() < 0;
-  const bool clockwise = shape != nullptr && shape->clockwise;
   Index material = materials_[mesh.material].index;
   if (!colours.empty() && !materials_[mesh.material].has_colour) {
     material = colouredByVertices(material);
   }
-  if (shape != nullptr && shape->two_sided) material = twoSided(material);
   const Index surface = builder_.surface(object, material);
   std::vector<Index> corners;
   std::vector<Vec2> pairs;
@@ -303,7 +205,7 @@ void AssimpReader::addMesh(const AssimpMesh& mesh, const std::string& object, co
     pairs.clear();
     factors.clear();
     for (std::uint32_t k = 0; k < count; ++k) {
-      const std::uint32_t vertex = indices[mirrors != clockwise ? count - 1 - k : k];
+      const std::uint32_t vertex = indices[mirrors ? count - 1 - k : k];
       corners.push_back(Index(first + vertex));
       if (!colours.empty()) factors.push_back(colours[vertex]);
       if (mesh.texcoords.empty()) continue;
@@ -400,7 +302,6 @@ Scene loadAssimp(const std::string& path, const SceneOptions& options) {
   const std::string extension = lowerExtension(path);
   if (extension == ".3ds") requireWhole3ds(path);
   if (extension == ".fbx") checkFbxNesting(path, readWholeFile(path));
-  if (extension == ".b3d") checkBlitz3dNesting(path, readWholeFile(path));
   return AssimpReader(path, options).read();
 }
 

@@ -19,12 +19,12 @@ namespace radiosity {
 namespace {
 
 /// Assimp survives some thousands of levels with the usual stack of 8 MB.
-constexpr std::size_t kDeepest = 1000;
+constexpr std::size_t kDeepestParts = 1000;
 
 void requireDepth(const std::string& path, std::size_t depth, const char* parts) {
-  if (depth <= kDeepest) return;
+  if (depth <= kDeepestParts) return;
   throw InputError(fmt::format("{}: {} are nested more than {} deep; export it again, or as .glb",
-                               path, parts, kDeepest));
+                               path, parts, kDeepestParts));
 }
 
 /// The number at a place of a little-endian file.
@@ -178,31 +178,6 @@ void checkFbxNesting(const std::string& path, std::string_view content) {
     checkRecords<std::uint32_t>(path, content);
   }
   checkModels(path, modelsOfBinary(content));
-}
-
-/// An object says after its own lines how many follow within it: "kids 2".
-void checkAc3dNesting(const std::string& path, std::string_view content) {
-  std::vector<long long> left;  // objects still to come, by level
-  forEach(content, "\nkids ", [&](std::size_t at) {
-    const std::string_view line = content.substr(at, content.substr(at).find('\n'));
-    while (!left.empty() && left.back() == 0) left.pop_back();
-    if (!left.empty()) --left.back();
-    const long long kids = parseInteger(trimmed(line)).value_or(0);
-    if (kids > 0) left.push_back(kids);
-    requireDepth(path, left.size(), "objects");
-  });
-}
-
-/// A chunk is a word of four letters, its length and its contents.
-void checkBlitz3dNesting(const std::string& path, std::string_view content) {
-  std::vector<std::size_t> ends;
-  forEach(content, "NODE", [&](std::size_t at) {
-    const auto length = numberAt<std::uint32_t>(content, at);
-    if (!length) return;
-    while (!ends.empty() && ends.back() <= at) ends.pop_back();
-    ends.push_back(at + sizeof *length + *length);
-    requireDepth(path, ends.size(), "nodes");
-  });
 }
 
 }  // namespace radiosity

@@ -1,5 +1,5 @@
-// Checks the nesting of an FBX, AC3D or Blitz3D file before Assimp reads it: Assimp follows nesting
-// without a limit, on the call stack.
+// Checks the nesting of an FBX file before Assimp reads it: Assimp follows nesting without a limit,
+// on the call stack.
 #pragma once
 
 #include <string>
@@ -10,7 +10,5 @@ namespace radiosity {
 /// Errors: InputError "PATH: what is wrong; cure" for parts nested more than 1,000 deep, and for
 /// models of FBX that contain themselves. What else is wrong with the file is left to Assimp.
 void checkFbxNesting(const std::string& path, std::string_view content);
-void checkAc3dNesting(const std::string& path, std::string_view content);
-void checkBlitz3dNesting(const std::string& path, std::string_view content);
 
 }  // namespace radiosity

@@ -19,7 +19,7 @@ constexpr int kDeepestElement = 200;  // as in JSON
 constexpr double kMostCopies = 1e6;
 
 /// The number of elements that each element stands for, with those below it and those to which it
-/// refers: Collada's <instance_node url="#id">, X3D's USE="name".
+/// refers: <instance_node url="#id">.
 class References {
  public:
   explicit References(const std::string& path) : path_(path) {}
@@ -28,9 +28,7 @@ class References {
     for (pugi::xml_node at = root; !at.empty(); at = next(at, root)) {
       ++elements_;
       checkIndices(at);
-      for (const char* name : {"id", "DEF"}) {
-        if (const pugi::xml_attribute given = at.attribute(name)) named_.emplace(given.value(), at);
-      }
+      if (const pugi::xml_attribute id = at.attribute("id")) named_.emplace(id.value(), at);
     }
     const double all = count(root, 0);
     if (all > elements_ + kMostCopies) {
@@ -46,7 +44,7 @@ class References {
     throw InputError(fmt::format("{}: {}", path_, what));
   }
 
-  /// Checks Collada's <p>: Assimp never gets past a character that is not a digit.
+  /// Checks <p>: Assimp never gets past a character that is not a digit.
   void checkIndices(const pugi::xml_node& text) const {
     if (std::strcmp(text.parent().name(), "p") != 0) return;
     const std::string_view value = text.value();
@@ -72,11 +70,9 @@ class References {
   }
 
   pugi::xml_node referredBy(const pugi::xml_node& element) const {
-    std::string_view name = element.attribute("USE").value();
-    if (std::strcmp(element.name(), "instance_node") == 0) {
-      name = element.attribute("url").value();
-      if (name.starts_with('#')) name.remove_prefix(1);
-    }
+    if (std::strcmp(element.name(), "instance_node") != 0) return {};
+    std::string_view name = element.attribute("url").value();
+    if (name.starts_with('#')) name.remove_prefix(1);
     const auto found = name.empty() ? named_.end() : named_.find(name);
     return found == named_.end() ? pugi::xml_node() : found->second;
   }
@@ -97,8 +93,8 @@ class References {
       if (!referred.empty()) add(referred);
       here = {sum, height, false};
     } else if (here.open) {
-      fail(fmt::format("<{}> `{}{}` refers to itself; take the reference out", element.name(),
-                       element.attribute("id").value(), element.attribute("DEF").value()));
+      fail(fmt::format("<{}> `{}` refers to itself; take the reference out", element.name(),
+                       element.attribute("id").value()));
     } else if (depth + here.height > kDeepestElement) {
       failForDepth(element);
     }
@@ -123,12 +119,8 @@ pugi::xml_document checkXml(const std::string& path) {
   pugi::xml_document document;
   // If the file is not XML, Assimp will say so: it has the same parser.
   if (!document.load_buffer(content.data(), content.size())) return {};
-  checkXml(path, document);
-  return document;
-}
-
-void checkXml(const std::string& path, const pugi::xml_document& document) {
   References(path).check(document.document_element());
+  return document;
 }
 
 }  // namespace radiosity
