@@ -80,8 +80,9 @@ TEST(FactorCodes, SmallFactorsOfLargePatchesAreKept) {
   const FactorCodes codes = encodeFactors(matrix, progress);
   EXPECT_EQ(codes.pairs, 1u);
   EXPECT_EQ(codes.quantisation.left_out, 0u);
-  // Its code follows that of the patch with itself. F_10 = F_01 A_0 / A_1.
-  EXPECT_NEAR(decoded(codes, 1) * 1.0 / 1e-12, 0.3, 1e-12);
+  EXPECT_EQ(codes.column, std::vector<std::uint32_t>{1});
+  // F_10 = F_01 A_0 / A_1.
+  EXPECT_NEAR(decoded(codes, 0) * 1.0 / 1e-12, 0.3, 1e-12);
 }
 
 TEST(FactorCodes, AnEmptyMatrixHasNoCodes) {
