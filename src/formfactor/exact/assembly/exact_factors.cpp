@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/figure_text.h"
 #include "base/processor_clock.h"
 #include "base/thread_order.h"
 #include "formfactor/closed_rows.h"
@@ -19,7 +20,9 @@
 #include "matrix/dealt_rows.h"
 #include "matrix/shared_rows.h"
 #include "mesh/clusters/canonical_order.h"
+#include "mesh/patches/enclosures.h"
 #include "radiosity/closure.h"
+#include "radiosity/matrix_functions.h"
 
 namespace radiosity {
 namespace {
@@ -190,6 +193,38 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, double toleranc
   closed.report(mesh, result.report);
 }
 
+/// Rows that sum to more than 1, or less if they are closed, by more than their figures and those
+/// of closed forms explain: where faces nearly meet or cross, one can be taken not to hide the
+/// other. The figure of such a row becomes the amount, as if one pair had it all.
+void findUnexplained(const PatchMesh& mesh, const PatchOrder& order, double closed_form,
+                     FormFactors& result) {
+  const double terms = std::sqrt(double(order.ranked) + 1);
+  std::size_t rows = 0;
+  double largest = 0;
+  double squares = 0;
+  for (std::size_t k = 0; k < order.ranked; ++k) {
+    const Index i = order.patch[k];
+    double& figure = result.error[i];
+    const double off = std::abs(1 - result.fronts[i] - result.backs[i] - result.sky[i]);
+    if (off <= terms * figure + closed_form) continue;
+    ++rows;
+    largest = std::max(largest, off);
+    squares += mesh.area[i] * (off * off - figure * figure);
+    figure = off;
+  }
+  if (rows == 0) return;
+  FormFactorReport& report = result.report;
+  report.error_figure =
+      std::hypot(report.error_figure, std::sqrt(squares / weightedSquares(result.matrix)));
+  report.notes.push_back(
+      {Severity::warning,
+       fmt::format("{} {} off a sum of 1 by up to {:.2g}, more than errors of integration explain: "
+                   "faces nearly meet or cross there, by little more than the coincidence of "
+                   "{:.3g} m; a larger --weld joins them; the amount is part of the error figures",
+                   countText(rows), rows == 1 ? "row is" : "rows are", largest,
+                   coincidenceOf(mesh))});
+}
+
 /// Reports how far closed rows are from 1 and, if asked to, puts the difference on the occluded
 /// pairs.
 void close(const PatchOrder& order, const ClosedRows& closed, const UncertainEntries& uncertain,
@@ -252,6 +287,7 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   setErrors(scene.order, sums.error, kernels.closed_form, result);
   ClosedRows closed(mesh, false);
   setAccounts(mesh, scene.order, options.toleranceOf(FormFactorMethod::exact), closed, result);
+  findUnexplained(mesh, scene.order, kernels.closed_form, result);
   if (closed.any() && options.closure != ClosureMode::off) {
     close(scene.order, closed, rows.uncertain, options.closure, result, progress);
   }
