@@ -44,10 +44,10 @@ class UncertainEntries {
   UncertainEntries& operator=(UncertainEntries&& other) = delete;
   ~UncertainEntries();
 
-  /// Sets the entries of row k of the triangle. `later`: positions, strictly increasing, each above
-  /// k and below N. errors[m] >= 0 and finite is the estimated absolute error of F from the patch
-  /// at position k to the one at later[m]; below 2^-64 the entry counts as known. Else InputError.
-  /// Different rows may be set from different threads at once.
+  /// Sets the entries of row k of the triangle. `later`: positions, strictly increasing, each k or
+  /// above and below N. errors[m] >= 0 and finite is the estimated absolute error of F from the
+  /// patch at position k to the one at later[m]; below 2^-64 the entry counts as known. Else
+  /// InputError. Different rows may be set from different threads at once.
   void setRow(std::size_t k, std::span<const Index> later, std::span<const double> errors);
 
   std::size_t size() const;

@@ -175,8 +175,7 @@ struct ExactReport {
 struct RayReport {
   std::size_t triangles = 0;
   std::size_t rays = 0;    ///< cast in total
-  std::size_t lost = 0;    ///< of these, not counted: they hit the polygon they left
-  std::size_t leaked = 0;  ///< also not counted: they left patches that are enclosed
+  std::size_t leaked = 0;  ///< of these, not counted: they left patches that are enclosed
   int rounds = 0;
   std::size_t short_rows = 0;  ///< given up before they met the tolerance
   /// The tolerance that rows were cast to, if none was asked for and kMostRaysUnasked did not

@@ -86,8 +86,7 @@ void rayFigures(Report& report, const RayReport& r) {
   report.count("triangles", "triangles", r.triangles);
   report.count("rays", "rays", r.rays);
   report.number("million_rays_per_second", "  a second, millions", rate);
-  report.count("rays_lost", "  not counted", r.lost);
-  report.count("rays_leaked", "  of them leaked out", r.leaked);
+  report.count("rays_leaked", "  leaked out, not counted", r.leaked);
   report.count("rounds", "rounds", std::size_t(r.rounds));
   report.count("short_rows", "rows short of the tolerance", r.short_rows);
   if (r.loosened_tolerance) {

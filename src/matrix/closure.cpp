@@ -51,8 +51,8 @@ constexpr double kDamping = 1e-2;
 ///     (D + W) step = shortfall,   D_k = sum_q w_kq over the entries that are not at 0,
 /// which is symmetric and positive semi-definite. If no entry turns negative, one step suffices.
 ///
-/// The share of a row beside the matrix is one more entry, which no other row has: d_k = max(-A_k
-/// share_k, w_k m_k) with w_k = (A_k e_k)^2.
+/// The diagonal and the share of a row beside the matrix are entries that no other row has: d_k =
+/// max(-A_k f_k, w_k m_k) with their value f_k and w_k = (A_k e_k)^2.
 class LeastSquaresClosure {
  public:
   LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
@@ -71,7 +71,7 @@ class LeastSquaresClosure {
   std::pmr::vector<std::uint8_t>& freeOf(std::size_t k);
   std::vector<double> timesWeights(const std::vector<double>& x);
   StrongPairs strongPairs(const std::vector<double>& own);
-  std::vector<double> diagonal();
+  std::vector<double> weightsOfRows();
   void evaluate();
   double largestLack() const;
   std::vector<double> scaledDiagonal();
@@ -85,12 +85,14 @@ class LeastSquaresClosure {
   std::vector<double> area_;           // in a unit that keeps its squares in range
   // Like uncertain_.row(k).codes, but 0 for entries held at 0:
   std::vector<std::pmr::vector<std::uint8_t>> free_;
-  struct Beside {
-    double share = 0;
+  /// An entry that no other row has.
+  struct Alone {
+    double value = 0;
     double squared_error = 0;
     bool held = false;
   };
-  std::vector<Beside> beside_;     // N, or none
+  std::vector<Alone> diagonal_;    // N
+  std::vector<Alone> beside_;      // N, or none
   std::vector<double> goal_;       // the target sum of each row
   std::vector<double> shortfall_;  // goal - row sum before
   std::vector<double> root_;       // of D while all are free
@@ -111,6 +113,7 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
       progress_(progress),
       pass_(matrix.size(), 1, [&](std::size_t k) { return uncertain.row(k).codes.size() + 1; }),
       area_(matrix.size()),
+      diagonal_(matrix.size()),
       beside_(beside.share.size()),
       goal_(matrix.size()),
       shortfall_(matrix.size()),
@@ -134,11 +137,12 @@ LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const Uncertain
     // A row that sums to 0 sees nothing or has no area: it keeps this sum.
     goal_[k] = sums[patch] > 0 ? target[patch] : 0.0;
     shortfall_[k] = goal_[k] - sums[patch];
+    diagonal_[k] = {matrix.diagonal(k), squared_[uncertain.row(k).own]};
     if (beside_.empty() || !(sums[patch] > 0)) continue;
     beside_[k] = {beside.share[patch], beside.error[patch] * beside.error[patch]};
   }
   report_.adjustable = uncertain.entries();
-  root_ = diagonal();
+  root_ = weightsOfRows();
   for (double& d : root_) d = std::sqrt(d);
   // The shortfall as long as no entry is changed.
   lacking_ = shortfall_;
@@ -187,10 +191,13 @@ std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>&
 }
 
 /// The diagonal D.
-std::vector<double> LeastSquaresClosure::diagonal() {
+std::vector<double> LeastSquaresClosure::weightsOfRows() {
   std::vector<double> sums = timesWeights(std::vector<double>(area_.size(), 1.0));
-  for (std::size_t k = 0; k < beside_.size(); ++k) {
-    if (!beside_[k].held) sums[k] += area_[k] * area_[k] * beside_[k].squared_error;
+  for (const std::vector<Alone>* alone : {&diagonal_, &beside_}) {
+    for (std::size_t k = 0; k < alone->size(); ++k) {
+      const Alone& entry = (*alone)[k];
+      if (!entry.held) sums[k] += area_[k] * area_[k] * entry.squared_error;
+    }
   }
   return sums;
 }
@@ -247,17 +254,20 @@ void LeastSquaresClosure::evaluate() {
       emptied[k] += held ? 1 : 0;
       handed_on[later - k - 1] += area_[k] * change;
     });
-    if (!beside_.empty() && beside_[k].squared_error > 0) {
-      Beside& beside = beside_[k];
-      beside.held = move(k, beside.share, beside.squared_error, multiplier_[k], beside.held).second;
-    }
+    const auto moveAlone = [&](Alone& entry) {
+      if (!(entry.squared_error > 0)) return;
+      entry.held = move(k, entry.value, entry.squared_error, multiplier_[k], entry.held).second;
+    };
+    moveAlone(diagonal_[k]);
+    emptied[k] += diagonal_[k].held ? 1 : 0;
+    if (!beside_.empty()) moveAlone(beside_[k]);
     value[k] -= area_[k] * shortfall_[k] * multiplier_[k];
   };
   pass_.run(1, row, [&](std::size_t k, const double* handed) {
     if (area_[k] > 0) lacking_[k] -= handed[0] / area_[k];
   });
   report_.emptied = std::accumulate(emptied.begin(), emptied.end(), std::size_t(0));
-  held_ = report_.emptied + std::size_t(std::ranges::count(beside_, true, &Beside::held));
+  held_ = report_.emptied + std::size_t(std::ranges::count(beside_, true, &Alone::held));
   turned_ = std::accumulate(turned.begin(), turned.end(), std::size_t(0));
   dual_ = std::accumulate(value.begin(), value.end(), 0.0);
 }
@@ -267,7 +277,7 @@ std::vector<double> LeastSquaresClosure::scaledDiagonal() {
   std::vector<double> own(area_.size(), 1.0);
   if (held_ == 0) return own;
   const double damping = kDamping * largestLack();
-  own = diagonal();
+  own = weightsOfRows();
   for (std::size_t k = 0; k < own.size(); ++k) {
     own[k] = root_[k] > 0 ? own[k] / (root_[k] * root_[k]) + damping : 0;
   }
@@ -348,7 +358,8 @@ void LeastSquaresClosure::apply() {
   std::vector<double> largest(n, 0.0);
   std::vector<double> moved(n, 0.0);
   parallelFor(n, kClosureGrain, [&](std::size_t k) {
-    if (uncertain_.row(k).runs.empty()) return;
+    const UncertainEntries::Row& uncertain = uncertain_.row(k);
+    if (uncertain.own == 0 && uncertain.runs.empty()) return;
     const ExchangeMatrix::UpperEntries before = matrix_.upperEntries(k);
     ExchangeMatrix::UpperEntries after;
     std::size_t next = 0;
@@ -358,16 +369,24 @@ void LeastSquaresClosure::apply() {
         after.factors.push_back(before.factors[next]);
       }
     };
-    forUncertain(k, [&](std::size_t, std::size_t later, std::uint8_t code, double f) {
+    // Returns the change of an entry.
+    const auto move = [&](std::size_t later, double f, double squared_error, double sum) {
       keepBelow(later);
       if (f != 0) ++next;
-      const double slope = area_[k] * squared_[code];
-      const double wanted = f + slope * (multiplier_[k] + multiplier_[later]);
-      double value = std::max(0.0, wanted);
+      double value = std::max(0.0, f + area_[k] * squared_error * sum);
       if (single) value = double(float(value));
       after.positions.push_back(Index(later));
       after.factors.push_back(value);
-      const double change = value - f;
+      return value - f;
+    };
+    if (uncertain.own != 0) {
+      const Alone& own = diagonal_[k];
+      const double change = move(k, own.value, own.squared_error, multiplier_[k]);
+      largest[k] = std::abs(change);
+      moved[k] = change * change;
+    }
+    forUncertain(k, [&](std::size_t, std::size_t later, std::uint8_t code, double f) {
+      const double change = move(later, f, squared_[code], multiplier_[k] + multiplier_[later]);
       if (change == 0) return;
       const double other_end = area_[k] / area_[later];
       largest[k] = std::max(largest[k], std::abs(change) * std::max(1.0, other_end));
@@ -394,7 +413,7 @@ ClosureReport LeastSquaresClosure::report(double tolerance) const {
   for (std::size_t k = 0; k < area_.size(); ++k) {
     double beside = 0;
     if (!beside_.empty()) {
-      beside = std::max(-beside_[k].share, area_[k] * beside_[k].squared_error * multiplier_[k]);
+      beside = std::max(-beside_[k].value, area_[k] * beside_[k].squared_error * multiplier_[k]);
     }
     const double residual = std::abs(sums[matrix_.order()[k]] + beside - goal_[k]);
     report.largest_residual = std::max(report.largest_residual, residual);

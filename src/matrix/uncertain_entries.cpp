@@ -71,15 +71,20 @@ void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
                                  later.size(), errors.size(), k, size()));
   }
   for (std::size_t m = 0; m < later.size(); ++m) {
-    const bool in_order = later[m] > k && later[m] < size() && (m == 0 || later[m] > later[m - 1]);
+    const bool in_order = later[m] >= k && later[m] < size() && (m == 0 || later[m] > later[m - 1]);
     if (in_order && errors[m] >= 0 && std::isfinite(errors[m])) continue;
     throw InputError(fmt::format(
         "uncertain entries, row {}: position {} is out of order or its error {} is no error", k,
         later[m], errors[m]));
   }
+  Row row;
+  if (!later.empty() && later[0] == k) {
+    row.own = codeOf(errors[0]);
+    later = later.subspan(1);
+    errors = errors.subspan(1);
+  }
   RunFinder finder(sizeof(std::uint8_t));
   for (const auto position : later) finder.add(position - k - 1, position - k);
-  Row row;
   row.runs = finder.take();
   std::size_t stored = 0;
   for (const Run run : row.runs) stored += run.count;
@@ -98,7 +103,7 @@ void UncertainEntries::setRow(std::size_t k, std::span<const Index> later,
 std::size_t UncertainEntries::entries() const {
   std::size_t count = 0;
   for (const Row& row : rows_) {
-    count += row.codes.size() -
+    count += (row.own != 0 ? 1u : 0u) + row.codes.size() -
              std::size_t(std::count(row.codes.begin(), row.codes.end(), std::uint8_t(0)));
   }
   return count;

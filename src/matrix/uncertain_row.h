@@ -14,6 +14,7 @@ struct UncertainEntries::Row {
   Row() = default;
   explicit Row(std::pmr::memory_resource* memory) : runs(memory), codes(memory) {}
 
+  std::uint8_t own = 0;                  ///< the code of the diagonal
   std::pmr::vector<Run> runs;            ///< from position k + 1 on
   std::pmr::vector<std::uint8_t> codes;  ///< of the error; 0: known
 };

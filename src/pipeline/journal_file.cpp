@@ -22,7 +22,7 @@ namespace {
 constexpr std::uint64_t kFileMagic = 0x0a53574f52444152ULL;   // "RADROWS\n"
 constexpr std::uint64_t kBlockMagic = 0x4b434f4c42444152ULL;  // "RADBLOCK"
 constexpr std::uint32_t kByteOrder = 0x01020304;
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::uint64_t kAlignment = 8;
 /// The time between two synchronisations of the file with the disk.
 constexpr std::chrono::seconds kSyncInterval{5};

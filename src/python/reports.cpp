@@ -59,8 +59,8 @@ py::dict dictOf(const ExactReport& report) {
 
 py::dict dictOf(const RayReport& report) {
   using R = RayReport;
-  return Fields(report)("triangles", &R::triangles)("rays", &R::rays)("lost", &R::lost)(
-             "leaked", &R::leaked)("rounds", &R::rounds)("short_rows", &R::short_rows)(
+  return Fields(report)("triangles", &R::triangles)("rays", &R::rays)("leaked", &R::leaked)(
+             "rounds", &R::rounds)("short_rows", &R::short_rows)(
              "loosened_tolerance", &R::loosened_tolerance)("largest_row_figure",
                                                            &R::largest_row_figure)
       .dict();

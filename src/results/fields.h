@@ -188,7 +188,6 @@ template <class Archive>
 void describe(Archive& a, Described<Archive, RayReport>& r) {
   a("triangles", r.triangles);
   a("rays", r.rays);
-  a("lost", r.lost);
   a("leaked", r.leaked);
   a("rounds", r.rounds);
   a("short_rows", r.short_rows);

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "formfactor/computed_factors.h"
@@ -14,6 +16,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/matrix_functions.h"
 #include "support/mesh_builder.h"
+#include "support/scene_builder.h"
 
 namespace radiosity {
 namespace {
@@ -236,6 +239,53 @@ TEST(Rays, PlatesCloseToEachOtherAreSeenAlikeFromBothEnds) {
     EXPECT_EQ(f.matrix.at(wall, 6), 0);
     EXPECT_EQ(f.matrix.at(wall, 7), 0);
     EXPECT_GT(f.backs[wall], 0.01);
+  }
+}
+
+/// Nearly every ray of one plate ends on the other, down to gaps that single precision cannot tell.
+/// No ray is lost, and a row that saw one thing alone is not called exact.
+TEST(Rays, PlatesAHairApartSeeEachOtherWhole) {
+  for (const double gap : {2e-7, 6e-7, 2e-6, 1e-5}) {
+    for (const double angle : {0.0, 0.3, 1.1, 2.5}) {
+      SCOPED_TRACE(std::to_string(1e9 * gap) + " nm, " + std::to_string(angle));
+      const Vec3 axis = glm::normalize(Vec3(1, 2, -0.5));
+      const auto turned = [&](const Vec3& p) { return test::rotated(p, axis, angle); };
+      test::MeshBuilder builder;
+      builder.grid("low", turned({0.2, -0.7, 0.4}), turned({1, 0, 0}), turned({0, 1, 0}));
+      builder.grid("high", turned({0.2, -0.7, 0.4 + gap}), turned({0, 1, 0}), turned({1, 0, 0}));
+      const FormFactors f = test::computed(builder.build(), byRays(1e-2));
+      for (std::size_t i = 0; i < 2; ++i) {
+        // Howell C-11 for a small gap: 1 less half of it along each edge.
+        const double error = std::abs(f.matrix.at(i, 1 - i) - (1 - 2 * gap));
+        EXPECT_GT(f.error[i], 0);
+        EXPECT_LE(error, f.error[i] + 1e-7);  // values are floats
+        EXPECT_NEAR(f.fronts[i] + f.backs[i] + f.sky[i], 1, 1e-6);
+      }
+    }
+  }
+}
+
+/// A lamp under a ceiling, nearer than single precision tells at its distance: it hides what is
+/// above it, from everywhere.
+TEST(Rays, ALampAHairUnderItsCeilingHidesIt) {
+  for (const double gap : {4e-7, 1e-6, 3e-6}) {
+    for (const double angle : {0.0, 0.7, 2.0}) {
+      SCOPED_TRACE(std::to_string(1e9 * gap) + " nm, " + std::to_string(angle));
+      test::SceneBuilder builder;
+      builder.box(builder.surface("room"), {0, 0, 0}, {1, 1, 1}, false);
+      builder.level(builder.surface("lamp"), 0.2, 0.3, 0.7, 0.8, 1 - gap, false);
+      Scene scene = builder.scene();
+      for (Vec3& p : scene.vertices) p = test::rotated(p, glm::normalize(Vec3(1, -1, 2)), angle);
+      const PatchMesh mesh = test::meshOf(scene, 40);
+      const FormFactors f = test::computed(mesh, byRays(1e-2));
+      const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
+      const Score of = score(f, truth);
+      EXPECT_LE(of.all, 2e-2);
+      EXPECT_GE(of.below_figure + 2, of.rows);  // 99%, and one more by chance
+      for (std::size_t i = 0; i < mesh.size(); ++i) {
+        EXPECT_NEAR(f.fronts[i] + f.backs[i] + f.sky[i], 1, 1e-6) << i;
+      }
+    }
   }
 }
 

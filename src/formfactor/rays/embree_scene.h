@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "formfactor/view_triangles.h"
@@ -64,10 +65,26 @@ class EmbreeScene {
   glm::vec3 place(const Vec3& vertex) const { return {vertex - middle_}; }
   /// Traces the first `lanes` rays of a packet: together if they are coherent, else one by one.
   void trace(RTCRayHit16& packet, int lanes, Coherence coherence = Coherence::coherent) const;
-  /// The front that covers the back which lane k of a packet has hit. In a plate without thickness,
-  /// two polygons back to back, the two tie in depth. Its geomID is RTC_INVALID_GEOMETRY_ID if
-  /// there is none.
-  RTCHit frontAt(const RTCRayHit16& packet, int k) const;
+  /// Where a ray ends: on a side of a triangle (0 the front, 1 the back), at Embree's u, v.
+  struct End {
+    std::uint32_t triangle;
+    int side;
+    float u;
+    float v;
+  };
+  /// Whether a triangle, or one of a polygon of the mesh, has others so near (near_triangles.h)
+  /// that what rays meet there is settled in double precision.
+  bool isNear(std::uint32_t triangle) const { return !near_.empty() && near_[triangle] != 0; }
+  bool isNearPolygon(Index polygon) const { return !near_.empty() && plane_of_[polygon].near; }
+  /// What a ray meets first where lane k of a packet has a hit: if a front and a back coincide, the
+  /// two sides of a plate without thickness, it meets the front. `own`: the polygon that the ray
+  /// leaves, or kNone.
+  End endAt(const RTCRayHit16& packet, int k, Index own) const;
+  /// What a ray meets within some kRayLift of `own`, an isNearPolygon() that it leaves: `from` has
+  /// left it by kRayLift, perhaps beyond what it meets. Nothing if there is none.
+  std::optional<End> endBefore(const glm::vec3& from, const glm::vec3& along, Index own) const;
+  /// Where a ray ends if `own`, the polygon of the mesh that it leaves, is not there.
+  std::optional<End> endBeyond(const glm::vec3& from, const glm::vec3& along, Index own) const;
   /// The vertices of the ViewScene and of such tiles, in its coordinates.
   const std::vector<Vec3>& vertices() const { return all_.vertices; }
   /// Corners in vertices().
@@ -80,6 +97,20 @@ class EmbreeScene {
   RTCDevice device_;
   RTCScene scene_;
   ViewTriangles all_;
+  std::vector<Index> source_of_;  ///< the polygon of the mesh of each triangle
+  struct Plane {
+    Vec3 normal;
+    Vec3 origin;  ///< less middle()
+    bool near;
+  };
+  double coincidence_;              ///< of the ViewScene
+  std::vector<std::uint8_t> near_;  ///< by triangle; empty: none is
+  std::vector<Plane> plane_of_;     ///< by polygon of the mesh, if any is near
+
+  class Settling;
+  End settled(const glm::vec3& from, const glm::vec3& along, float at, const glm::vec3& normal,
+              const End& found, Index own) const;
+  void findNear(const ViewScene& scene, const PatchMesh& mesh);
 };
 
 /// Flushes denormals while it lives, which Embree's documentation asks for.

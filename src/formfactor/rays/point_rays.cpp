@@ -85,22 +85,14 @@ glm::vec3 PointRays::lifted(const RaySource& from) const {
 RayEnd PointRays::endOf(const RTCRayHit16& packet, int k, std::span<const Index> own) const {
   RayEnd end;
   if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return end;
-  const std::uint32_t triangle = packet.hit.primID[k];
-  const Index polygon = targets_.polygonOf(triangle);
+  const glm::vec3 along(packet.ray.dir_x[k], packet.ray.dir_y[k], packet.ray.dir_z[k]);
+  const EmbreeScene::End hit = embree_.endAt(packet, k, kNone);
+  const Index polygon = targets_.polygonOf(hit.triangle);
   if (std::find(own.begin(), own.end(), polygon) != own.end()) {
     end.patch = RayEnd::kOwn;
     return end;
   }
-  const glm::vec3 along(packet.ray.dir_x[k], packet.ray.dir_y[k], packet.ray.dir_z[k]);
-  const glm::vec3 normal(packet.hit.Ng_x[k], packet.hit.Ng_y[k], packet.hit.Ng_z[k]);
-  std::uint32_t item = targets_.itemAt(triangle, glm::dot(normal, along) < 0 ? 0 : 1,
-                                       packet.hit.u[k], packet.hit.v[k]);
-  if (item >= scene_.patches) {
-    const RTCHit front = embree_.frontAt(packet, k);
-    if (front.geomID != RTC_INVALID_GEOMETRY_ID) {
-      item = targets_.itemAt(front.primID, 0, front.u, front.v);
-    }
-  }
+  const std::uint32_t item = targets_.itemAt(hit.triangle, hit.side, hit.u, hit.v);
   end.patch = item < scene_.patches ? item : RayEnd::kBlack;
   const glm::vec3 from(packet.ray.org_x[k], packet.ray.org_y[k], packet.ray.org_z[k]);
   end.at = (Vec3(from + packet.ray.tfar[k] * along) + embree_.middle()) / scene_.scale;

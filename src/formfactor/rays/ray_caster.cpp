@@ -10,9 +10,8 @@
 namespace radiosity {
 namespace {
 
-/// Ends of a ray that are no items.
+/// The end of a ray that is no item.
 constexpr std::uint32_t kSky = kNone - 1;
-constexpr std::uint32_t kLost = kNone - 2;
 /// Rays that are sorted together, at most: their batch fits the second-level cache.
 constexpr std::size_t kBatch = 16384;
 /// Cells of directions: kBatch points put about one packet into each.
@@ -87,6 +86,11 @@ struct RayCaster::Batch {
             cell.data()};
   }
 
+  glm::vec3 from(std::size_t ray) const { return {origin[0][ray], origin[1][ray], origin[2][ray]}; }
+  glm::vec3 along(std::size_t ray) const {
+    return {direction[0][ray], direction[1][ray], direction[2][ray]};
+  }
+
   /// The order in which rays leave together: by direction.
   void sort() {
     std::array<std::uint16_t, kCells + 1> start{};
@@ -119,6 +123,13 @@ RayOrigins RayCaster::origins(std::size_t unknown) const {
   return {mesh_, patches, scene_.scale, embree_.middle()};
 }
 
+bool RayCaster::canAim(const RayOrigins& origins) const {
+  for (std::uint32_t k = 0; k < origins.parts(); ++k) {
+    if (embree_.isNearPolygon(origins.part(k).polygon)) return false;
+  }
+  return true;
+}
+
 std::size_t RayCaster::bytes() const {
   // Embree's tree takes about this much a triangle in robust mode.
   constexpr std::size_t kTreeBytes = 160;
@@ -133,14 +144,7 @@ std::uint32_t RayCaster::rayItem(std::uint32_t item) const {
   return std::uint32_t(fronts() + (item - patches));
 }
 
-/// The item whose front covers the back that a ray has hit (EmbreeScene::frontAt()), or kNone.
-std::uint32_t RayCaster::frontAt(const RTCRayHit16& packet, int k) const {
-  const RTCHit front = embree_.frontAt(packet, k);
-  if (front.geomID == RTC_INVALID_GEOMETRY_ID) return kNone;
-  return targets_.itemAt(front.primID, 0, front.u, front.v);
-}
-
-/// Calls visit(ray, item) with the ray's place in the batch; kSky and kLost stand for no item.
+/// Calls visit(ray, item) with the ray's place in the batch; kSky stands for no item.
 template <class Visit>
 void RayCaster::tracePacket(const RayOrigins& origins, Batch& batch, const std::uint16_t* order,
                             int lanes, const Visit& visit) const {
@@ -153,20 +157,24 @@ void RayCaster::tracePacket(const RayOrigins& origins, Batch& batch, const std::
   kernels_.find(packet, targets_, ends);
   for (int k = 0; k < lanes; ++k) {
     const std::size_t ray = order[k];
+    const Index own = origins.part(std::uint32_t(batch.part[ray])).polygon;
+    if (embree_.isNearPolygon(own)) {
+      if (const auto end = embree_.endBefore(batch.from(ray), batch.along(ray), own)) {
+        visit(ray, itemAt(*end));
+        continue;
+      }
+    }
     if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
       visit(ray, kSky);
-      continue;
+    } else if (ends.polygon[std::size_t(k)] == own) {
+      // By rounding alone: at grazing angles, or where it is very thin.
+      const auto end = embree_.endBeyond(batch.from(ray), batch.along(ray), own);
+      visit(ray, end ? itemAt(*end) : kSky);
+    } else if (embree_.isNear(packet.hit.primID[k])) {
+      visit(ray, itemAt(embree_.endAt(packet, k, own)));
+    } else {
+      visit(ray, targets_.itemOf(ends, std::size_t(k)));
     }
-    if (ends.polygon[std::size_t(k)] == origins.part(std::uint32_t(batch.part[ray])).polygon) {
-      visit(ray, kLost);
-      continue;
-    }
-    std::uint32_t item = targets_.itemOf(ends, std::size_t(k));
-    if (item >= fronts()) {
-      const std::uint32_t front = frontAt(packet, k);
-      if (front != kNone) item = front;
-    }
-    visit(ray, item);
   }
 }
 
@@ -206,8 +214,6 @@ void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_
     Counts& counts = of_replicate[ray < batch.each ? 0 : 1];
     if (item == kSky) {
       ++counts.sky;
-    } else if (item == kLost) {
-      ++counts.own;
     } else {
       counts.add(item, 1);
     }
@@ -216,9 +222,7 @@ void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_
 
 void RayCaster::visitEnd(const RayOrigins& origins, const Batch& batch, std::size_t ray,
                          std::uint32_t item, const EndVisitor& visit) const {
-  if (item == kLost) return;
-  const glm::vec3 from(batch.origin[0][ray], batch.origin[1][ray], batch.origin[2][ray]);
-  visit(from, origins.frame(origins.part(std::uint32_t(batch.part[ray])).frame).z,
+  visit(batch.from(ray), origins.frame(origins.part(std::uint32_t(batch.part[ray])).frame).z,
         item == kSky ? std::uint32_t(items()) : item);
 }
 

@@ -40,7 +40,6 @@ class RayCaster {
     std::vector<std::uint32_t> hits;  ///< items() values
     std::vector<std::uint32_t> hit;   ///< the items with any, in the order they were met
     std::uint32_t sky = 0;
-    std::uint32_t own = 0;  ///< on the polygon they left: rounding at grazing angles, no true hit
 
     void add(std::uint32_t item, std::uint32_t more) {
       if (more == 0) return;
@@ -53,7 +52,6 @@ class RayCaster {
       for (const std::uint32_t item : hit) hits[item] = 0;
       hit.clear();
       sky = 0;
-      own = 0;
     }
   };
   /// Casts rays `first` to `last` of each replicate's sequence of points, scrambled by `seed` and
@@ -62,7 +60,7 @@ class RayCaster {
             std::array<Counts, kReplicates>& of_replicate) const;
 
   /// Visits `rays` rays of every replicate in a fixed order: where each leaves, the normal there,
-  /// and the item it ends on, items() for the sky. Lost rays are left out. Thread-safe.
+  /// and the item it ends on, items() for the sky. Thread-safe.
   using EndVisitor =
       std::function<void(const glm::vec3& from, const glm::vec3& normal, std::uint32_t item)>;
   void visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
@@ -76,8 +74,12 @@ class RayCaster {
 
   /// A place of the mesh in the coordinates of rays.
   glm::vec3 place(const Vec3& at) const { return embree_.place(at * scene_.scale); }
+  /// The coordinates of rays are the mesh's times this, less a middle.
+  double scale() const { return scene_.scale; }
   const EmbreeScene& embree() const { return embree_; }
   RayOrigins origins(std::size_t unknown) const;
+  /// False if something may stand nearer to the origins than rays start before them.
+  bool canAim(const RayOrigins& origins) const;
   /// K: the number of items that are fronts.
   std::size_t fronts() const {
     return items_ == RayItems::unknowns ? mesh_.unknowns() : mesh_.size();
@@ -94,7 +96,9 @@ class RayCaster {
     return std::uint32_t(items_ == RayItems::unknowns ? mesh_.unknownOf(patch) : patch);
   }
   std::uint32_t rayItem(std::uint32_t item) const;
-  std::uint32_t frontAt(const RTCRayHit16& packet, int k) const;
+  std::uint32_t itemAt(const EmbreeScene::End& end) const {
+    return targets_.itemAt(end.triangle, end.side, end.u, end.v);
+  }
   template <class Packet>
   void forPackets(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
                   std::uint32_t last, const Packet& packet) const;

@@ -151,6 +151,7 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
     upper.factors.clear();
     upper.errors.clear();
     accuracy[k] = accuracyOf(merged, rows[k], scene.area()[k]);
+    if (!merged.all_known) accuracy[k].unresolved = scene.unresolved()[k];
     const auto& columns = merged.columns;
     const auto from = std::lower_bound(columns.begin(), columns.end(), k);
     auto next_known = merged.known.begin();
@@ -164,13 +165,11 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
         upper.errors.push_back(std::min(1.0, next_known->error / scene.area()[k]));
         continue;
       }
-      upper.errors.push_back(
-          mergedError(value, {density[k], density[j]}, {scene.area()[k], scene.area()[j]}));
+      upper.errors.push_back(mergedError(value, {density[k], j == k ? 0.0 : density[j]},
+                                         {scene.area()[k], scene.area()[j]}));
     }
     result.matrix.setUpperRow(k, upper.positions, upper.factors);
-    const std::size_t itself = !upper.positions.empty() && upper.positions[0] == k ? 1 : 0;
-    uncertain.setRow(k, std::span(upper.positions).subspan(itself),
-                     std::span(upper.errors).subspan(itself));
+    uncertain.setRow(k, upper.positions, upper.errors);
   });
   double squares = 0;
   double norms = 0;
@@ -182,7 +181,8 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
     const double figure = row.figure();
     result.error[scene.order()[k]] = figure;
     const double error = row.expectedError();
-    squares += scene.area()[k] * (error * error + row.known_error * row.known_error);
+    squares += scene.area()[k] * (error * error + row.known_error * row.known_error +
+                                  row.unresolved * row.unresolved);
     const double norm = std::hypot(row.norm, aim.sky_weight * result.sky[scene.order()[k]]);
     accuracy[k].norm = norm;
     usual.add(norm, scene.area()[k]);
@@ -265,7 +265,6 @@ ClosedRows closedRows(const PatchMesh& mesh, const RayScene& scene, const std::v
     if (!closed.keeps(scene.order()[k], rows[k].skyShare(), kMostLeaks)) continue;
     report.rays.leaked += rows[k].sky[0] + rows[k].sky[1];
   }
-  report.rays.lost += report.rays.leaked;
   closed.report(mesh, report);
   return closed;
 }

@@ -328,8 +328,6 @@ class Rounds {
   void finish() {
     if (loosened_ > 1) report_.loosened_tolerance = loosened_ * aim_.tolerance;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      const RayRow& row = rows_[k];
-      report_.lost += row.lost[0] + row.lost[1];
       report_.short_rows += isGoodEnough(k) ? 0 : 1;
     }
   }

@@ -175,7 +175,6 @@ void RayRow::add(const RayRow& more) {
   hits.assign(sums.begin(), sums.end());
   for (std::size_t r = 0; r < kReplicates; ++r) {
     sky[r] += more.sky[r];
-    lost[r] += more.lost[r];
   }
   rays = more.rays;
   window = more.window;
@@ -185,11 +184,9 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
                    const KnownEntries& known, std::span<const std::uint8_t> wanted,
                    ScratchMemory* scratch, const std::function<void(const MergedRow&)>& visit) {
   const std::size_t n = rows.size();
-  std::vector<std::array<double, kReplicates>> density(n);  // rays a square metre
+  std::vector<double> density(n);  // rays a square metre, in each replicate
   for (std::size_t k = 0; k < n; ++k) {
-    for (int r = 0; r < kReplicates; ++r) {
-      density[k][std::size_t(r)] = area[k] > 0 ? rows[k].counted(r) / area[k] : 0.0;
-    }
+    density[k] = area[k] > 0 ? rows[k].countedEach() / area[k] : 0.0;
   }
   tbb::enumerable_thread_specific<Merging> mergings;
   Transposed handed(rows, scratch);
@@ -221,11 +218,11 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
         merging.columns.push_back(j);
         std::array<double, kReplicates>& factor = merging.factors.emplace_back();
         std::array<double, 2> hits_of{};  // its own; those of j
+        const double rays = (density[k] + (j == k ? 0.0 : density[j])) * area[k];
         for (std::size_t r = 0; r < kReplicates; ++r) {
           const double hits = double(own[r]) + double(of_j[r]);
           if (hits == 0) continue;
-          const double from_j = j == k ? 0.0 : density[j][r];
-          factor[r] = hits / ((density[k][r] + from_j) * area[k]);
+          factor[r] = hits / rays;
           hits_of[0] += double(own[r]);
           hits_of[1] += double(of_j[r]);
         }
@@ -249,8 +246,8 @@ namespace {
 
 /// Adds an entry that a row alone has counted.
 void addAlone(const RayRow& row, std::size_t e, ReplicateSums& sums) {
-  const double first = row.hits[e][0] / row.counted(0);
-  const double second = row.hits[e][1] / row.counted(1);
+  const double first = row.hits[e][0] / row.countedEach();
+  const double second = row.hits[e][1] / row.countedEach();
   const double hits = double(row.hits[e][0]) + double(row.hits[e][1]);
   const double mean = 0.5 * (first + second);
   sums.add(first, second, foreseenVariance(mean, hits, hitsVariance(mean, hits)));

@@ -28,7 +28,6 @@ inline constexpr double kSeesNothing = 0x1p-100;
 struct RayRow {
   std::uint32_t rays = 0;  ///< cast in each replicate
   std::array<std::uint32_t, kReplicates> sky{};
-  std::array<std::uint32_t, kReplicates> lost{};  ///< no true hits: they do not count
   /// The share of the hemisphere that rays go into; the rest is proved to be sky. Each ray stands
   /// for 1 / window of those that would go everywhere.
   double window = 1;
@@ -46,12 +45,10 @@ struct RayRow {
   std::size_t bytes() const {
     return columns.size() * sizeof(Index) + hits.size() * sizeof(hits[0]);
   }
-  /// Rays that count in one replicate, and those beside the window that they stand for.
-  double counted(int replicate) const {
-    return (double(rays) - double(lost[std::size_t(replicate)])) / window;
-  }
+  /// The rays of one replicate, and those beside the window that they stand for.
+  double countedEach() const { return double(rays) / window; }
   /// The same in both.
-  double counted() const { return counted(0) + counted(1); }
+  double counted() const { return kReplicates * countedEach(); }
   /// Those of them that see the sky.
   double countedSky() const { return counted() * (1 - window) + double(sky[0]) + double(sky[1]); }
   /// The share of them that the sky has.

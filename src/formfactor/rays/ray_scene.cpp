@@ -1,8 +1,13 @@
 #include "formfactor/rays/ray_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <optional>
+#include <utility>
 
+#include "base/geometry/box.h"
+#include "base/geometry/box_tree.h"
 #include "formfactor/patch_seed.h"
 #include "formfactor/row_accounts.h"
 #include "mesh/clusters/cluster_means.h"
@@ -14,6 +19,66 @@ namespace {
 
 /// Rays between two checks for cancellation: some milliseconds.
 constexpr std::uint32_t kSlice = 1u << 16;
+
+/// Single precision moves origins by a rounding, and rays start kRayLift before them: what stands
+/// beside a patch is seen wrongly from this far inside its border, in scenes of size 1.
+constexpr double kUnresolved = 2 * kRayLift;
+/// It tells where the border takes up this share of a patch.
+constexpr double kNarrow = 0.02;
+/// The sine between planes that are one.
+constexpr double kParallel = 1e-6;
+
+/// The share of a patch that lies within `width` of its border.
+double borderShare(const PatchMesh& mesh, std::size_t patch, double width) {
+  const auto outline = mesh.outline(patch);
+  double border = 0;
+  for (std::size_t c = 0; c < outline.size(); ++c) {
+    border +=
+        glm::distance(mesh.vertices[outline[c]], mesh.vertices[outline[(c + 1) % outline.size()]]);
+  }
+  return mesh.area[patch] > 0 ? std::min(width * border / mesh.area[patch], 1.0) : 0.0;
+}
+
+Box3 boxOfPatch(const PatchMesh& mesh, std::size_t patch) {
+  Box3 box;
+  for (const Index v : mesh.outline(patch)) box.add(mesh.vertices[v]);
+  return box;
+}
+
+/// Whether something that is not in the plane of a patch comes within `width` of it.
+bool standsBeside(const PatchMesh& mesh, std::size_t patch, double width, const BoxTree& patches) {
+  const Vec3& normal = mesh.normal[patch];
+  bool found = false;
+  patches.query(boxOfPatch(mesh, patch).grown(width), [&](Index other) {
+    const bool parallel = glm::length(glm::cross(normal, mesh.normal[other])) <= kParallel;
+    const double height = glm::dot(normal, mesh.centroid[other] - mesh.centroid[patch]);
+    found = !(parallel && std::abs(height) <= width);
+    return !found;
+  });
+  return found;
+}
+
+/// By unknown: the share of its area that lies beside something, within `width` of a border; 0 but
+/// for patches that are hardly wider.
+std::vector<double> unresolvedShares(const PatchMesh& mesh, double width) {
+  std::vector<double> shares(mesh.unknowns(), 0.0);
+  std::vector<std::pair<std::size_t, double>> narrow;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const double share = borderShare(mesh, i, width);
+    if (share > kNarrow) narrow.emplace_back(i, share);
+  }
+  if (narrow.empty()) return shares;
+  std::vector<Box3> boxes;
+  for (std::size_t i = 0; i < mesh.size(); ++i) boxes.push_back(boxOfPatch(mesh, i));
+  const BoxTree patches(boxes);
+  const std::vector<double> areas = unknownAreas(mesh);
+  for (const auto& [i, share] : narrow) {
+    if (!standsBeside(mesh, i, width, patches)) continue;
+    const std::size_t k = mesh.unknownOf(i);
+    shares[k] += share * mesh.area[i] / areas[k];
+  }
+  return shares;
+}
 
 /// Counts of this thread, all 0.
 using Replicates = std::array<RayCaster::Counts, kReplicates>;
@@ -35,6 +100,8 @@ RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mes
     area_.push_back(areas[order_[k]]);
     seed_.push_back(patchSeed(mesh, by_identity.first_patch[k], with_seed));
   }
+  const std::vector<double> unresolved = unresolvedShares(mesh, kUnresolved / caster_.scale());
+  for (const Index unknown : order_) unresolved_.push_back(unresolved[unknown]);
   std::optional<Enclosures> found;
   if (!enclosuresOf(mesh, found).closed) windows_.emplace(caster_.embree());
 }
@@ -42,7 +109,7 @@ RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mes
 /// Aims rays at what they can meet where that takes up little of the hemisphere. Returns the share
 /// of it that they then go into.
 double RayScene::aim(RayOrigins& origins) const {
-  if (!windows_) return 1;
+  if (!windows_ || !caster_.canAim(origins)) return 1;
   const auto windows = windows_->of(origins);
   if (!windows) return 1;
   const bool is_alone = std::all_of(windows->begin(), windows->end(),
@@ -77,7 +144,6 @@ void RayScene::addCounts(std::array<RayCaster::Counts, kReplicates>& counts, Ray
       const Index column = row.columns[e];
       of.add(column < n ? order_[column] : column, row.hits[e][r]);
     }
-    row.lost[r] += of.own;
     row.sky[r] += of.sky;
   }
   std::vector<Index> columns;

@@ -27,6 +27,9 @@ class RayScene {
   const std::vector<Index>& position() const { return position_; }
   /// Areas by position, m^2.
   const std::vector<double>& area() const { return area_; }
+  /// By position, the share of the area whose distance from the border rays do not resolve; 0 but
+  /// for patches that are hardly wider.
+  const std::vector<double>& unresolved() const { return unresolved_; }
   /// Continues a row, by position, to `rays` rays in each replicate. If `progress` is cancelled,
   /// returns early with a useless row. Thread-safe for different rows.
   void cast(std::size_t position, std::uint32_t rays, RayRow& row, const Progress& progress) const;
@@ -42,6 +45,7 @@ class RayScene {
   std::vector<Index> order_;
   std::vector<Index> position_;  ///< of each unknown in it
   std::vector<double> area_;
+  std::vector<double> unresolved_;
   std::vector<std::uint64_t> seed_;    ///< by position
   std::optional<RayWindows> windows_;  ///< of an open scene
 };

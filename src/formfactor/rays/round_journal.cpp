@@ -43,7 +43,6 @@ std::optional<RayRound> RoundJournal::take(int round) const {
 void putRayRow(const RayRow& row, ByteWriter& bytes) {
   bytes.put(row.rays);
   bytes.put(row.sky);
-  bytes.put(row.lost);
   bytes.put(row.window);
   bytes.putVarint(row.columns.size());
   Index before = 0;
@@ -58,7 +57,6 @@ RayRow takeRayRow(ByteReader& bytes) {
   RayRow row;
   row.rays = bytes.get<std::uint32_t>();
   row.sky = bytes.get<std::array<std::uint32_t, kReplicates>>();
-  row.lost = bytes.get<std::array<std::uint32_t, kReplicates>>();
   row.window = bytes.get<double>();
   // An entry takes a byte or more: there are no more entries than bytes left.
   const std::size_t entries = std::min<std::size_t>(bytes.getVarint(), bytes.left());

@@ -33,7 +33,7 @@ double RowAccuracy::figure() const {
   }
   // In 99% of rows, one of the rays hits any part that takes more than this share of the row.
   const double unseen = missedHits(isUnknown() ? hits : 0, kStated);
-  return std::max(seen, rays > 0 ? std::min(1.0, unseen / rays) : 0.0);
+  return std::hypot(std::max(seen, rays > 0 ? std::min(1.0, unseen / rays) : 0.0), unresolved);
 }
 
 bool RowAccuracy::isUnknown() const {
@@ -67,7 +67,7 @@ double pairHitsVariance(double factor, const std::array<double, 2>& hits,
 
 double foreseenVariance(double factor, double hits, double of_hits) {
   if (!(hits > 0)) return 0;
-  const double of_net = of_hits * std::pow(std::max(1.0, of_hits), -kGain);
+  const double of_net = std::pow(std::max(1.0, of_hits), 1 - kGain);
   return factor * factor * of_net / (hits * hits);
 }
 

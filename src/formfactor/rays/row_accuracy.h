@@ -21,12 +21,16 @@ struct RowAccuracy {
   double known_error = 0;  ///< stated, of the entries that are known; not in `error`
   double backs_norm = 0;   ///< as `norm`, of the black backs that it sees, ...
   double backs_error = 0;  ///< ... and as `error`
-  double rays = 0;         ///< its own that count, of both replicates
-  double hits = 0;         ///< on fronts, from both ends
+  /// The share of its area where origins of rays are not told apart from what stands beside them:
+  /// an error of as much, not in `error`.
+  double unresolved = 0;
+  double rays = 0;  ///< its own that count, of both replicates
+  double hits = 0;  ///< on fronts, from both ends
 
   /// A bound that holds in 99% of rows on sqrt(sum_j (F_ij - true F_ij)^2), backs among the j:
   /// error squared over its estimate is distributed like F with `terms` degrees of freedom above
-  /// and `degrees` below. It is at least the share that all rays may have missed.
+  /// and `degrees` below. It is at least the share that all rays may have missed, and what is
+  /// unresolved.
   double figure() const;
 
   /// True if it has seen next to nothing: neither the difference of its replicates nor what is
@@ -74,7 +78,7 @@ double pairHitsVariance(double factor, const std::array<double, 2>& hits,
 /// The variance of a mean form factor known from `hits` hits by rays of scrambled nets:
 /// `of_hits`, that of independent rays (hitsVariance()), less the gain of nets. They leave to
 /// chance the cells of the net that a target's border runs through: of n points in four dimensions
-/// about n^(3/4).
+/// about n^(3/4). One ray is left to chance in any case: of n that all hit, the next may miss.
 double foreseenVariance(double factor, double hits, double of_hits);
 
 /// The error that rows have in common. A row's own two replicates say little of its error if few
