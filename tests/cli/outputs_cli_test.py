@@ -154,6 +154,7 @@ class Killed(CliTest):
 
 
 class Memory(CliTest):
+    @unittest.skipIf("ASAN_OPTIONS" in os.environ, "sanitizers take more than that for themselves")
     def test_too_little_memory_is_not_another_fault(self):
         said = set()
         # The smallest end before the program's first line.
