@@ -489,6 +489,20 @@ TEST(UncertainEntries, TakeAByteEach) {
   EXPECT_EQ(uncertain.entries(), 8 * later.size());
 }
 
+/// What a patch, or the patches of an unknown, see of themselves is an entry like the others.
+TEST(UncertainEntries, TheDiagonalIsClosedToo) {
+  auto matrix = ExchangeMatrix::symmetric({1.0, 1.0}, {0, 1}, Precision::double_precision);
+  matrix.setUpperRow(0, std::vector<double>{0.5, 0.3});
+  matrix.setUpperRow(1, std::vector<double>{0.7});
+  UncertainEntries uncertain(2);
+  uncertain.setRow(0, std::vector<Index>{0}, std::vector<double>{0.1});
+  EXPECT_EQ(uncertain.entries(), 1u);
+  closed(matrix, uncertain, std::vector<double>{1.0, 1.0});
+  EXPECT_NEAR(matrix.at(0, 0), 0.7, 1e-12);
+  EXPECT_EQ(matrix.at(0, 1), 0.3);
+  EXPECT_EQ(matrix.at(1, 1), 0.7);
+}
+
 TEST(UncertainEntries, RefuseInvalidErrors) {
   UncertainEntries uncertain(4);
   const auto set = [&](std::size_t k, std::vector<Index> later, std::vector<double> errors) {
@@ -496,7 +510,7 @@ TEST(UncertainEntries, RefuseInvalidErrors) {
   };
   EXPECT_THROW(set(4, {}, {}), InputError);
   EXPECT_THROW(set(0, {1}, {}), InputError);
-  EXPECT_THROW(set(1, {1}, {0.1}), InputError);
+  EXPECT_THROW(set(1, {0}, {0.1}), InputError);
   EXPECT_THROW(set(0, {4}, {0.1}), InputError);
   EXPECT_THROW(set(0, {2, 1}, {0.1, 0.1}), InputError);
   EXPECT_THROW(set(0, {1}, {-0.1}), InputError);
