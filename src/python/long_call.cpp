@@ -1,5 +1,6 @@
 #include "long_call.h"
 
+#include <cxxabi.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -170,8 +171,8 @@ bool pythonEnds() {
 }
 
 /// Gives up Python's lock. Once the process ends, Python ends other threads that ask for the lock,
-/// by an exception that no destructor and no catch may meet; such a thread waits here for its end
-/// instead. (It meets the exception if the end begins while it waits for the lock.)
+/// by an exception that no destructor may meet, since the work goes on; such a thread waits here
+/// for its end instead.
 class Unlocked {
  public:
   Unlocked() = default;
@@ -182,7 +183,11 @@ class Unlocked {
   void lock() {
     if (state_ == nullptr) return;
     while (!at_end_ && pythonEnds()) std::this_thread::sleep_for(kBetweenLooks);
-    PyEval_RestoreThread(std::exchange(state_, nullptr));
+    try {
+      PyEval_RestoreThread(std::exchange(state_, nullptr));
+    } catch (const abi::__forced_unwind&) {  // the end began while we waited for the lock
+      while (true) std::this_thread::sleep_for(kBetweenLooks);
+    }
   }
   void unlock() { state_ = PyEval_SaveThread(); }
 

@@ -37,6 +37,9 @@ constexpr double kRays = 3e-2;
 constexpr double kMostSeconds = 4;
 /// Values in single precision, of a row's norm.
 constexpr double kRounding = 1e-7;
+/// What closed forms hold, of a row's norm, and values that are rounding alone.
+constexpr double kClosedForm = 1e-5;
+constexpr double kNothing = 1e-12;
 /// Of a hemicube's light, on no account. Both ends of a pair are estimates that are off by some per
 /// cent, and nobody says by how much: a solution is refused as unbalanced from here on
 /// (src/solve/README.md), and that is what is held against it.
@@ -83,7 +86,7 @@ class Checker {
       checkClosed(method.name, factors->report.closed);
       if (method.method != FormFactorMethod::hemicube) {
         checkKnown(method.name, *factors);
-        if (truth) checkErrors(method.name, *factors, *truth);
+        if (truth && !isAmbiguous(*truth)) checkErrors(method.name, *factors, *truth);
       }
       if (model_.seed % 4 == 0) checkThreads(method, *factors);
     }
@@ -129,6 +132,15 @@ class Checker {
     return has(scene_.notes) || has(result_.report.notes) || has(of_factors);
   }
 
+  /// Faces nearly meet or cross, by about the coincidence: which hides which, and what lies in
+  /// contact, is then the method's choice.
+  bool isAmbiguous(const FormFactors& truth) const {
+    if (model_.known.at_weld_distance) return true;
+    return std::any_of(truth.report.notes.begin(), truth.report.notes.end(), [](const Note& note) {
+      return note.text.find("--weld") != std::string::npos;
+    });
+  }
+
   /// No area is lost without a word.
   void checkMesh() {
     for (const SurfaceAreas& s : result_.report.surfaces) {
@@ -152,13 +164,12 @@ class Checker {
   void checkAccounts(const std::string& by, const FormFactors& f) {
     const bool has_errors = !f.error.empty();
     const auto sane = [](double value) { return std::isfinite(value) && value >= 0; };
+    const double terms = std::sqrt(double(f.matrix.size()) + 1);
     for (std::size_t i = 0; i < f.matrix.size(); ++i) {
       double sum = 0;
-      std::size_t entries = 0;
       f.matrix.forRow(i, [&](Index j, double value) {
         if (!sane(value)) fault("negative " + by, "F({}, {}) = {}", i, j, value);
         sum += value;
-        ++entries;
         if (f.matrix.isSymmetric()) checkPair(by, f.matrix, i, j, value);
       });
       if (!sane(f.fronts[i]) || !sane(f.backs[i]) || !sane(f.sky[i]) ||
@@ -166,7 +177,7 @@ class Checker {
         fault("account negative " + by, "row {}: fronts {}, backs {}, sky {}", i, f.fronts[i],
               f.backs[i], f.sky[i]);
       }
-      const double stated = has_errors ? std::sqrt(double(entries) + 1) * f.error[i] : 0.0;
+      const double stated = has_errors ? terms * f.error[i] : 0.0;
       const double all = sum + f.backs[i] + f.sky[i];
       if (f.matrix.area()[i] > 0 && !(std::abs(all - 1) <= 1e-6 + stated)) {
         fault("row sum " + by, "row {}: {} + {} + {} = {}, stated {}", i, sum, f.backs[i], f.sky[i],
@@ -245,7 +256,7 @@ class Checker {
       norms += area[i] * norm;
       states += area[i] * truth.error[i] * truth.error[i];
       const double error = std::sqrt(square);
-      const double figure = f.error[i] + truth.error[i] + kRounding * std::sqrt(norm) + 1e-15;
+      const double figure = f.error[i] + truth.error[i] + kRounding * std::sqrt(norm) + kNothing;
       ++count.rows;
       if (error > figure) ++count.beyond;
       const double ratio = error / figure;
@@ -253,7 +264,7 @@ class Checker {
         count.worst = ratio;
         count.worst_scene = fmt::format("{} {}", model_.kind, model_.seed);
       }
-      if (!(ratio <= 2)) {
+      if (!(error <= 2 * figure + kClosedForm * std::sqrt(norm))) {
         fault("figure " + by, "row {}: error {:.3g}, stated {:.3g} ({:.3g} of the tight run)", i,
               error, f.error[i], truth.error[i]);
       }

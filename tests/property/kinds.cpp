@@ -165,7 +165,9 @@ void noise(Model& model, Draw& draw) {
   }
   if (draw.chance(0.7)) triangulate(model);
   // Half of them near the coincidence of 1e-7 of the diagonal.
-  shake(model, draw, draw.chance(0.5) ? draw.powerOfTen(-9, -5) : draw.powerOfTen(-7.5, -6.5));
+  const double share = draw.chance(0.5) ? draw.powerOfTen(-9, -5) : draw.powerOfTen(-7.5, -6.5);
+  shake(model, draw, share);
+  model.known.at_weld_distance = share > 2e-8 && share < 3e-6;
   model.patches = std::size_t(draw.powerOfTen(1, 2.9));
 }
 

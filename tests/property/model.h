@@ -36,8 +36,8 @@ struct Known {
     double error = 0;
   };
   std::optional<Factor> factor;
-  /// A gap in the scene is as narrow as what the program takes for no gap at all. It may be welded,
-  /// if a note says so.
+  /// A gap in the scene, or the noise of its corners, is about as wide as what the program takes
+  /// for no gap at all. It may be welded, if a note says so, and methods may differ there.
   bool at_weld_distance = false;
   /// All fronts face out of the shell that encloses the scene.
   bool inside_out = false;
