@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -196,6 +197,56 @@ class Unlocked {
   PyThreadState* state_ = PyEval_SaveThread();
 };
 
+/// The work that goes on now. What it uses is taken apart as the process ends, so it ends before.
+class GoingWork {
+ public:
+  /// Never taken apart itself.
+  static GoingWork& all() {
+    static auto* const works = new GoingWork;
+    return *works;
+  }
+
+  /// Does `work`; `progress`: null if it cannot be cancelled.
+  template <class Work>
+  void run(Progress* progress, const Work& work) {
+    add(progress);
+    try {
+      work();
+    } catch (...) {
+      remove(progress);
+      throw;
+    }
+    remove(progress);
+  }
+
+  /// Python is at its end, so that no new work begins.
+  void end() {
+    constexpr std::chrono::seconds kLongest{5};  // for what cannot be cancelled
+    std::unique_lock lock(mutex_);
+    for (Progress* progress : going_) {
+      if (progress != nullptr) progress->cancel();
+    }
+    over_.wait_for(lock, kLongest, [this] { return going_.empty(); });
+  }
+
+ private:
+  void add(Progress* progress) {
+    const std::lock_guard lock(mutex_);
+    going_.insert(progress);
+  }
+  void remove(Progress* progress) {
+    {
+      const std::lock_guard lock(mutex_);
+      going_.erase(going_.find(progress));
+    }
+    over_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable over_;
+  std::multiset<Progress*> going_;
+};
+
 /// Runs `work` on a worker. Every 50 ms `look` is called with Python's lock; if it throws an error
 /// of Python, interrupt() says whether we still wait for the work, and the error is thrown in the
 /// end.
@@ -290,7 +341,7 @@ void runLong(const py::object& report, const std::function<void(Progress&)>& wor
     progress.cancel();
     return true;
   };
-  runOnWorker([&] { work(progress); }, look, cancel);
+  runOnWorker([&] { GoingWork::all().run(&progress, [&] { work(progress); }); }, look, cancel);
 }
 
 void runShortSteps(const py::object& report, const std::function<void(Progress&)>& work) {
@@ -298,7 +349,7 @@ void runShortSteps(const py::object& report, const std::function<void(Progress&)
   LookingProgress progress(report, unlocked);
   std::exception_ptr failure;
   try {
-    work(progress);
+    GoingWork::all().run(&progress, [&] { work(progress); });
   } catch (...) {
     failure = std::current_exception();
   }
@@ -308,7 +359,11 @@ void runShortSteps(const py::object& report, const std::function<void(Progress&)
 }
 
 void runWithoutSteps(const std::function<void()>& work) {
-  runOnWorker(work, handleSignals, [] { return false; });
+  runOnWorker([work] { GoingWork::all().run(nullptr, work); }, handleSignals, [] { return false; });
+}
+
+void endWorkWithProcess() {
+  Py_AtExit([] { GoingWork::all().end(); });
 }
 
 }  // namespace radiosity::python

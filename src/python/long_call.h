@@ -27,4 +27,8 @@ void runShortSteps(const pybind11::object& report, const std::function<void(Prog
 /// all that it touches.
 void runWithoutSteps(const std::function<void()>& work);
 
+/// Work that other threads still do when Python ends is cancelled then, and waited for. Call it
+/// once.
+void endWorkWithProcess();
+
 }  // namespace radiosity::python

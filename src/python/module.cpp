@@ -114,6 +114,7 @@ void bindErrors(py::module_& module) {
 PYBIND11_MODULE(_core, module) {
   using namespace radiosity;
   python::bindErrors(module);
+  python::endWorkWithProcess();
   module.attr("version") = RADIOSITY_VERSION;
   module.def("set_threads", [](const python::py::object& threads) {
     setThreads(python::valueOf<std::uint16_t>("threads", threads));
