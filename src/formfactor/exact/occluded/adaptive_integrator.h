@@ -91,7 +91,7 @@ class AdaptiveIntegrator {
                         std::span<VisibleFraction> out);
   void sumCell(const SampleCell& cell, std::size_t side, int level, const Members& members,
                std::span<VisibleFraction> out);
-  void lookOutside(const SampleCell& cell, double share, const Members& members,
+  void lookOutside(const SampleCell& cell, std::size_t side, double share, const Members& members,
                    std::span<VisibleFraction> out);
   void cutCell(const SampleCell& cell, const Members& members, int level,
                std::span<VisibleFraction> out);
