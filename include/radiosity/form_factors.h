@@ -1,7 +1,5 @@
-// Form factors: F_ij is the fraction of the flux leaving patch i that reaches patch j. The methods:
-// exact, area to area, with blocked parts clipped off; rays, area to area as well; hemicube
-// (Cohen & Greenberg 1985), seen from one eye at each patch's centroid. If patches share unknowns
-// (PatchMesh::clusters), i and j are clusters.
+// Form factors: F_ij is the fraction of the flux leaving patch i that reaches patch j. If patches
+// share unknowns (PatchMesh::clusters), i and j are clusters.
 #pragma once
 
 #include <algorithm>
@@ -13,28 +11,13 @@
 #include "radiosity/base.h"
 #include "radiosity/closure.h"
 #include "radiosity/exchange_matrix.h"
+#include "radiosity/form_factor_method.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/row_journal.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
 class Processes;
-
-enum class FormFactorMethod {
-  automatic,  ///< exact or rays, as a sample of rows decides; the report says why
-  hemicube,
-  exact,
-  rays  ///< area to area, by counting cosine-distributed rays
-};
-
-/// What made form factors that are there.
-enum class FactorsFrom {
-  exact,
-  rays,
-  hemicube,
-  matrix,  ///< given as a matrix (factorsOfMatrix())
-  file     ///< read from a file of form factors alone (factorsOfFile())
-};
 
 enum class ClosureMode {
   off,
@@ -104,8 +87,8 @@ struct FormFactorOptions {
   std::size_t memory_held = 0;  ///< bytes held by others; they count towards limit and estimate
   bool simd = true;             ///< false: Highway's scalar target (same bits)
 
-  static constexpr double kExactTolerance = 1e-3;
-  static constexpr double kRayTolerance = 1e-2;
+  static constexpr double kExactTolerance = traitsOf(FormFactorMethod::exact).tolerance;
+  static constexpr double kRayTolerance = traitsOf(FormFactorMethod::rays).tolerance;
   static constexpr double kSourceTolerance = 3e-2;
   static constexpr double kSourceSky = 0.1;
   /// About half a minute on two cores.
@@ -113,11 +96,17 @@ struct FormFactorOptions {
 
   void validate() const;
   Precision storedPrecision() const;
-  /// The tolerance of a method other than hemicube.
+  /// The tolerance of a method; of one without, that of exact form factors beside its own.
   double toleranceOf(FormFactorMethod by) const {
     if (tolerance) return *tolerance;
     if (sources_only) return kSourceTolerance;
-    return by == FormFactorMethod::rays ? kRayTolerance : kExactTolerance;
+    const double usual = traitsOf(by).tolerance;
+    return usual > 0 ? usual : kExactTolerance;
+  }
+  /// Whether both form factors of a pair are one value: A_i F_ij = A_j F_ji.
+  bool givesSymmetric() const {
+    const MethodTraits& traits = traitsOf(method);
+    return traits.symmetric || (symmetrize && traits.uses("symmetrize"));
   }
   /// Whether form factors need to be good for sources alone. If a tolerance is given, they are
   /// those for all uses.
@@ -246,7 +235,7 @@ struct FormFactors {
   /// j, stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to
   /// 14 times the true one. Hemicube: empty.
   std::vector<double> error;
-  FactorsFrom method = FactorsFrom::matrix;
+  FormFactorMethod method = FormFactorMethod::matrix;  ///< never automatic
   FormFactorReport report;
 
   /// Whether no row sees a front: a room that faces outward, or a lone convex body.
@@ -266,7 +255,8 @@ struct FormFactors {
 /// plan itself. On scenes that nothing was fitted to they are mostly right within a factor of 2.
 struct FormFactorPlan {
   FormFactorMethod method = FormFactorMethod::hemicube;  ///< never automatic
-  std::string reason;                                    ///< if it was automatic
+  std::string what;    ///< "12 hemicubes of 256 pixels", ...; empty: form factors between patches
+  std::string reason;  ///< if it was automatic
   std::size_t bytes = 0;         ///< about, held at once; options.memory_held included
   std::size_t matrix_bytes = 0;  ///< of these, the matrix
   /// On the disk in FormFactorOptions::scratch_folder, including the matrix; 0: all is in memory.
@@ -274,13 +264,19 @@ struct FormFactorPlan {
   double seconds = 0;
   /// As FormFactorOptions::tolerance, looser if rays stop early.
   double tolerance = 0;
-  double refining = 0;  ///< exact: the share of the seconds that is proportional to 1 / tolerance
+  /// The share of the seconds that goes with tolerance^-refining_order.
+  double refining = 0;
+  double refining_order = 1;
   /// About the seconds for a tolerance that is `times` the plan's, 1 or more.
   double secondsIfLooser(double times) const;
   /// If rays stop early: seconds for the default tolerance.
   std::optional<double> seconds_to_tolerance;
-  /// Seconds of the other one of exact and rays, if both were sampled.
-  std::optional<double> other_seconds;
+  /// The other one of exact and rays, if both were sampled.
+  struct Other {
+    FormFactorMethod method = FormFactorMethod::exact;
+    double seconds = 0;
+  };
+  std::optional<Other> other;
   /// The mesh, the options and everything that the plan prepared for the computation.
   struct Prepared;
   std::shared_ptr<const Prepared> prepared;

@@ -31,17 +31,18 @@ inline constexpr NameTable<Up, 2> kUpNames{{{Up::y, "y"}, {Up::z, "z"}}};
 inline constexpr NameTable<VertexColours, 3> kVertexColoursNames{{{VertexColours::unused, "off"},
                                                                   {VertexColours::linear, "linear"},
                                                                   {VertexColours::srgb, "srgb"}}};
-inline constexpr NameTable<FormFactorMethod, 4> kMethodNames{
-    {{FormFactorMethod::automatic, "auto"},
-     {FormFactorMethod::exact, "exact"},
-     {FormFactorMethod::rays, "rays"},
-     {FormFactorMethod::hemicube, "hemicube"}}};
-/// The methods have the same words as in kMethodNames.
-inline constexpr NameTable<FactorsFrom, 5> kFactorsFromNames{{{FactorsFrom::exact, "exact"},
-                                                              {FactorsFrom::rays, "rays"},
-                                                              {FactorsFrom::hemicube, "hemicube"},
-                                                              {FactorsFrom::matrix, "matrix"},
-                                                              {FactorsFrom::file, "file"}}};
+/// The words of kMethods from `First` to before `End`.
+template <std::size_t First, std::size_t End>
+constexpr NameTable<FormFactorMethod, End - First> methodNames() {
+  NameTable<FormFactorMethod, End - First> names;
+  for (std::size_t k = First; k < End; ++k)
+    names[k - First] = {kMethods[k].method, kMethods[k].word};
+  return names;
+}
+/// The methods that can be asked for.
+inline constexpr auto kMethodNames = methodNames<0, kMethods.size() - 2>();
+/// What has made form factors that are there.
+inline constexpr auto kFactorsFromNames = methodNames<1, kMethods.size()>();
 inline constexpr NameTable<EyeChoice, 3> kEyeNames{
     {{EyeChoice::cpu, "cpu"}, {EyeChoice::gl, "gl"}, {EyeChoice::automatic, "auto"}}};
 inline constexpr NameTable<ClosureMode, 3> kClosureNames{{{ClosureMode::off, "off"},

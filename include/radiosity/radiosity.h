@@ -7,6 +7,7 @@
 #include "radiosity/elements.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factor_kernel.h"
+#include "radiosity/form_factor_method.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"

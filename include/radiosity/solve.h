@@ -109,7 +109,7 @@ struct Solution {
 /// none. No limit for matrices from elsewhere: areas may be missing, and notes say what is odd.
 double mostImbalance(const FormFactors& factors);
 /// What a user can do about more than that, by the options of the program.
-std::string imbalanceCure(FactorsFrom method);
+std::string imbalanceCure(FormFactorMethod method);
 
 /// `reflectance`, `emission`: N * bands, row-major; 0 <= rho <= 1, E >= 0, finite, else InputError
 /// naming the patch. Needs a matrix of N rows and accounts of N values. Work that the scene does

@@ -16,20 +16,22 @@ namespace {
 std::string briefLine(const FormFactors& factors) {
   const FormFactorReport& r = factors.report;
   const std::string scene = r.closed ? "closed scene" : "open scene";
-  if (factors.method == FactorsFrom::exact) {
+  if (factors.method == FormFactorMethod::exact) {
     const ExactReport& e = r.exact;
     return fmt::format("{}, {} occluded, in {}; {}; {}; error of the matrix about {}",
                        plural(e.unoccluded + e.occluded, "pair", "pairs"), countText(e.occluded),
                        durationText(r.seconds), bytesText(r.matrix_bytes), scene,
                        numberText(r.error_figure, 2));
   }
-  if (factors.method == FactorsFrom::rays) {
+  if (factors.method == FormFactorMethod::rays) {
     return fmt::format("{} rays in {}; {}; {}; error of the matrix about {}",
                        countText(r.rays.rays), durationText(r.seconds), bytesText(r.matrix_bytes),
                        scene, numberText(r.error_figure, 2));
   }
-  return fmt::format("{} in {}; {}; {}; largest row error {}",
-                     plural(r.hemicubes, "hemicube", "hemicubes"), durationText(r.seconds),
+  const std::string what = factors.method == FormFactorMethod::hemicube
+                               ? plural(r.hemicubes, "hemicube", "hemicubes")
+                               : nameOf(kFactorsFromNames, factors.method);
+  return fmt::format("{} in {}; {}; {}; largest row error {}", what, durationText(r.seconds),
                      bytesText(r.matrix_bytes), scene, numberText(r.largest_row_error, 3));
 }
 
@@ -156,11 +158,11 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
     report.bytes("matrix_bytes", "matrix in memory", r.matrix_bytes);
     report.bytes("estimated_bytes", "  estimated before", r.estimated_bytes);
     report.count("polygons", "planar polygons", r.polygons);
-    if (factors.method == FactorsFrom::exact) {
+    if (factors.method == FormFactorMethod::exact) {
       exactFigures(report, r.exact);
-    } else if (factors.method == FactorsFrom::rays) {
+    } else if (factors.method == FormFactorMethod::rays) {
       rayFigures(report, r.rays);
-    } else {
+    } else if (factors.method == FormFactorMethod::hemicube) {
       hemicubeFigures(report, r);
     }
     accuracyFigures(report, factors);

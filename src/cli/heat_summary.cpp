@@ -79,7 +79,7 @@ void factorError(Report& report, const FormFactors& factors) {
                 *std::max_element(factors.error.begin(), factors.error.end()));
 }
 
-void warnOfLosses(const HeatBalance& b, FactorsFrom method, double given_off,
+void warnOfLosses(const HeatBalance& b, FormFactorMethod method, double given_off,
                   std::vector<Note>& notes) {
   const auto worthIt = [&](double watts) { return std::abs(watts) > kWorthWarning * given_off; };
   const auto share = [&](double watts) {
@@ -121,7 +121,7 @@ void noteTemperatures(const HeatBalance& b, double given_off,
   }
 }
 
-void warnings(Report& report, const HeatSummary& s, FactorsFrom method, double given_off,
+void warnings(Report& report, const HeatSummary& s, FormFactorMethod method, double given_off,
               const std::vector<SurfaceHeat>& surfaces, const HeatOptions& options) {
   std::vector<Note> notes;
   warnOfLosses(s.balance, method, given_off, notes);

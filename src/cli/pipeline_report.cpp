@@ -24,21 +24,18 @@ constexpr double kLongWait = 60;
 /// The options that shorten a wait, and the shorter time if it is known.
 std::string cures(const FormFactorPlan& plan) {
   constexpr double kLoosest = 0.1;
-  if (plan.method == FormFactorMethod::hemicube) {
-    return "for less: fewer --patches, a lower --resolution";
-  }
   std::string text = "for less:";
-  const bool rays = plan.method == FormFactorMethod::rays;
   const double tolerance = plan.tolerance;
-  const double looser = std::min(kLoosest, (rays ? 3 : 10) * tolerance);
+  const double looser = std::min(kLoosest, (plan.refining_order > 1 ? 3 : 10) * tolerance);
   if (looser > tolerance) {
     text += fmt::format(" --tolerance {} (about {}),", numberText(looser, 2),
                         durationText(plan.secondsIfLooser(looser / tolerance)));
   }
   text += " fewer --patches";
-  if (plan.other_seconds && *plan.other_seconds < plan.seconds) {
-    text += fmt::format(", --method {} (about {})", rays ? "exact" : "rays",
-                        durationText(*plan.other_seconds));
+  if (traitsOf(plan.method).uses("resolution")) text += ", a lower --resolution";
+  if (plan.other && plan.other->seconds < plan.seconds) {
+    text += fmt::format(", --method {} (about {})", traitsOf(plan.other->method).word,
+                        durationText(plan.other->seconds));
   }
   return text;
 }
@@ -118,17 +115,17 @@ void PipelineReport::notReused(const std::string& path, const std::string& why) 
 
 /// Notes given options that apply to another method than the chosen one.
 void PipelineReport::noteUnused(FormFactorMethod method) {
-  const bool hemicubes = method == FormFactorMethod::hemicube;
+  const MethodTraits& used = traitsOf(method);
   // Gathering uses hemicubes, too.
   const bool gathers = request_.command == Command::gather || request_.command == Command::compare;
   const std::pair<const char*, bool> options[] = {
-      {"--resolution", request_.resolution && !hemicubes && !gathers},
-      {"--eye", request_.eye && !hemicubes && !gathers},
-      {"--seed", request_.seed && method == FormFactorMethod::exact && !gathers},
-      {"--symmetrize", request_.symmetrize.value_or(false) && !hemicubes},
-      {"--near", request_.near_pairs && !hemicubes},
-      {"--tolerance", request_.tolerance && hemicubes},
-      {"--closure", request_.closure && hemicubes}};
+      {"--resolution", request_.resolution && !used.uses("resolution") && !gathers},
+      {"--eye", request_.eye && !used.uses("eye") && !gathers},
+      {"--seed", request_.seed && !used.uses("seed") && !gathers},
+      {"--symmetrize", request_.symmetrize.value_or(false) && !used.uses("symmetrize")},
+      {"--near", request_.near_pairs && !used.uses("near")},
+      {"--tolerance", request_.tolerance && !used.uses("tolerance")},
+      {"--closure", request_.closure && !used.uses("closure")}};
   std::vector<std::string> unused;
   for (const auto& [name, is_unused] : options) {
     if (is_unused) unused.emplace_back(name);
@@ -144,18 +141,18 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
   const FormFactorOptions& options = pipeline.options().factors;
   const PatchMesh& mesh = made(pipeline.results().mesh).mesh;
   const std::size_t patches = mesh.size();
-  const bool hemicubes = plan.method == FormFactorMethod::hemicube;
+  const MethodTraits& method = traitsOf(plan.method);
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
   const std::size_t value = options.storedPrecision() == Precision::double_precision ? 8 : 4;
-  const std::size_t disk = plan.matrix_bytes * (hemicubes ? 1 : 2) * (value + 4) / value;
+  const std::size_t disk = plan.matrix_bytes * (method.symmetric ? 2 : 1) * (value + 4) / value;
   const std::string clusters =
       mesh.clusters ? fmt::format(", for {} clusters", countText(mesh.unknowns())) : "";
-  const std::string what =
-      hemicubes ? fmt::format("{} of {} pixels", plural(patches, "hemicube", "hemicubes"),
-                              options.resolution)
-                : fmt::format("{} between {} to {}", nameOf(kMethodNames, plan.method),
-                              plural(patches, "patch", "patches"), numberText(plan.tolerance, 2));
+  std::string what = plan.what;
+  if (what.empty()) {
+    what = fmt::format("{} between {}", method.word, plural(patches, "patch", "patches"));
+  }
+  if (plan.tolerance > 0) what += " to " + numberText(plan.tolerance, 2);
   report_.line(
       "form factors",
       fmt::format(
@@ -165,7 +162,7 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
           writes_results_ ? ", disk at most about " + bytesText(disk) : ""));
   if (!plan.reason.empty()) report_.line("", "because " + plan.reason);
   noteUnused(plan.method);
-  if (options.sources_only && !options.tolerance && !hemicubes) {
+  if (options.onlyForSources() && method.uses("tolerance")) {
     report_.line("", "only as sources of the light that elements gather; --tolerance for more");
   }
   if (plan.seconds_to_tolerance) {
@@ -201,9 +198,7 @@ void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
   summarize(pipeline, event);
   if (event.stage != Stage::form_factors || event.action != StageAction::reused) return;
   // Computed form factors were noted when they were planned.
-  const FactorsFrom made_by = made(pipeline.results().factors).method;
-  const auto method = named(kMethodNames, nameOf(kFactorsFromNames, made_by));
-  if (method) noteUnused(*method);
+  noteUnused(made(pipeline.results().factors).method);
 }
 
 void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event) {

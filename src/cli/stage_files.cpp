@@ -59,12 +59,12 @@ std::string scratchFolder(const Request& request, const std::string& results_out
 /// Refuses a solver that cannot use the form factors, before these are computed.
 void requireSolver(const PipelineOptions& options) {
   const FormFactorOptions& factors = options.factors;
-  const bool raw_rows = factors.method == FormFactorMethod::hemicube && !factors.symmetrize;
-  if (options.solve.solver != Solver::cg || !raw_rows) return;
-  throw InputError(
-      "--solver cg: conjugate gradients need symmetric form factors, and rows of hemicubes are "
-      "not; "
-      "use --solver gmres or auto, or merge the rows with --symmetrize");
+  if (options.solve.solver != Solver::cg || factors.givesSymmetric()) return;
+  const MethodTraits& method = traitsOf(factors.method);
+  throw InputError(fmt::format(
+      "--solver cg: conjugate gradients need symmetric form factors, and those by the method {} "
+      "are not; use --solver gmres or auto{}",
+      method.word, method.uses("symmetrize") ? ", or merge the rows with --symmetrize" : ""));
 }
 
 }  // namespace

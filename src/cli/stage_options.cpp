@@ -136,14 +136,20 @@ void addEyeOption(CLI::App& app, Request& r, const char* group, const std::strin
       ->check(CLI::IsMember(namesIn(kEyeNames)));
 }
 
+std::string methodsText() {
+  std::string text;
+  for (const MethodTraits& method : kMethods) {
+    if (method.summary.empty() || method.method == FormFactorMethod::automatic) continue;
+    text += fmt::format("{} ({}), ", method.word, method.summary);
+  }
+  return text + "or auto (default): " + std::string(traitsOf(FormFactorMethod::automatic).summary);
+}
+
 }  // namespace
 
 void addFactorOptions(CLI::App& app, Request& r) {
   const FormFactorOptions defaults;
-  add(app, "Form factors", "--method", r.method, "METHOD",
-      "exact (area to area, hidden parts clipped off), rays (area to area, by counting rays), "
-      "hemicube (seen from one point a patch), or auto (default): exact or rays, by what a sample "
-      "of rows takes; the report says why")
+  add(app, "Form factors", "--method", r.method, "METHOD", methodsText())
       ->check(CLI::IsMember(namesIn(kMethodNames)));
   // In `compare`, --tolerance is that of the difference.
   const bool compares = app.get_name() == commandName(Command::compare);

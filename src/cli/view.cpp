@@ -41,12 +41,14 @@ std::string defaultPage(const std::string& input) {
   return name;
 }
 
-/// Refuses hemicubes with two estimates for each pair, before any work is done.
+/// Refuses a method with two estimates for each pair, before any work is done.
 void requireOneEstimate(const Request& request, const FormFactorOptions& options) {
-  if (options.method != FormFactorMethod::hemicube || options.symmetrize) return;
-  throw InputError(request.input +
-                   ": a page keeps one form factor a pair, and hemicubes give two estimates of "
-                   "each; add --symmetrize, or --method exact or rays");
+  if (options.givesSymmetric()) return;
+  const MethodTraits& method = traitsOf(options.method);
+  throw InputError(fmt::format(
+      "{}: a page keeps one form factor a pair, and the method {} gives two estimates of each; "
+      "{}--method exact or rays",
+      request.input, method.word, method.uses("symmetrize") ? "add --symmetrize, or " : "give "));
 }
 
 void summarizePage(Report& report, const Picture& picture, double ev, const PageReport& page) {

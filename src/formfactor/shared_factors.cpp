@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/hash.h"
-#include "formfactor/exact/assembly/exact_factors.h"
-#include "formfactor/hemicube/hemicube_factors.h"
-#include "formfactor/rays/ray_factors.h"
+#include "formfactor/method.h"
 
 namespace radiosity {
 
@@ -33,7 +31,9 @@ std::uint64_t checksumOfMesh(const PatchMesh& mesh) {
 }  // namespace
 
 void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
-  if (options.method == FormFactorMethod::hemicube && options.eye == EyeChoice::gl) {
+  const MethodTraits& method = traitsOf(options.method);
+  const bool automatic = options.method == FormFactorMethod::automatic;
+  if (!automatic && method.uses("eye") && options.eye == EyeChoice::gl) {
     throw InputError(
         "under mpirun hemicubes are drawn by the processor: give --eye cpu or auto, or start the "
         "program "
@@ -44,13 +44,12 @@ void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
         "--symmetrize needs all rows in one process: leave it out, or start the program without "
         "mpirun");
   }
-  const bool rays = options.method == FormFactorMethod::rays;
-  if (options.closure == ClosureMode::enforce && !rays) {
+  if (options.closure == ClosureMode::enforce && !method.counts_unknowns) {
     throw InputError(
         "--closure enforce needs all rows in one process: leave it out, or start the "
         "program without mpirun");
   }
-  if (mesh.clusters && !rays && options.method != FormFactorMethod::automatic) {
+  if (mesh.clusters && !method.counts_unknowns && !automatic) {
     throw InputError(
         "under mpirun patches share unknowns where rays count between these: give --method rays "
         "or more --patches, or start the program without mpirun");
@@ -91,13 +90,7 @@ ExchangeMatrix shareFormFactors(const PatchMesh& mesh, Processes& processes, Pro
   options.seed = task.seed;
   options.random_turns = task.random_turns;
   options.near_exact = task.near_exact;
-  if (task.method == FormFactorMethod::rays) {
-    return rayRowsForOthers(mesh, task.seed, processes, progress);
-  }
-  if (task.method == FormFactorMethod::hemicube) {
-    return hemicubeRowsForOthers(mesh, options, processes, progress, journal);
-  }
-  return exactRowsForOthers(mesh, options, processes, progress, journal);
+  return entryOf(task.method).rows_for_others(mesh, options, processes, progress, journal);
 }
 
 }  // namespace radiosity

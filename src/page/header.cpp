@@ -49,11 +49,10 @@ Json materialsOf(const Scene& scene, const std::vector<MaterialColours>& colours
   return materials;
 }
 
-/// The tolerance of the method; null for hemicubes, which have none.
+/// The tolerance of the method; null if it has none.
 Json toleranceOf(const FormFactors& factors, const FormFactorOptions& options) {
-  const auto method = named(kMethodNames, nameOf(kFactorsFromNames, factors.method));
-  if (!method || *method == FormFactorMethod::hemicube) return nullptr;
-  return factors.report.rays.loosened_tolerance.value_or(options.toleranceOf(*method));
+  if (!(traitsOf(factors.method).tolerance > 0)) return nullptr;
+  return factors.report.rays.loosened_tolerance.value_or(options.toleranceOf(factors.method));
 }
 
 }  // namespace

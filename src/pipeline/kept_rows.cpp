@@ -50,7 +50,7 @@ std::optional<FormFactorMethod> Pipeline::methodOfKeptRows(const StageKey& key) 
   if (options_.factors.method != FormFactorMethod::automatic) return std::nullopt;
   const std::optional<std::string> there = JournalFile::keyIn(journal.path);
   if (!there) return std::nullopt;
-  for (const FormFactorMethod method : {FormFactorMethod::exact, FormFactorMethod::rays}) {
+  for (const FormFactorMethod method : kAutomaticChoices) {
     if (*there == journalKey(key, nameOf(kMethodNames, method))) return method;
   }
   return std::nullopt;

@@ -186,20 +186,18 @@ namespace {
 StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_hash) {
   StageKey key;
   key.add("method", nameOf(kMethodNames, options.method));
-  const bool any = options.method == FormFactorMethod::automatic;
-  if (options.method != FormFactorMethod::hemicube) {
+  const MethodTraits& method = traitsOf(options.method);
+  if (method.uses("tolerance")) {
     const char* unasked = options.sources_only ? kOfSources : "default";
     key.add("tolerance", options.tolerance ? fmt::format("{}", *options.tolerance) : unasked);
-    key.add("closure", nameOf(kClosureNames, options.closure));
   }
-  if (options.method != FormFactorMethod::exact) key.add("seed", fmt::format("{}", options.seed));
-  if (any || options.method == FormFactorMethod::hemicube) {
-    key.add("resolution", fmt::format("{}", options.resolution));
-    key.add("symmetrize", onOff(options.symmetrize));
-    key.add("near", options.near_exact ? "exact" : "off");
-    addTurns(key, options.random_turns);
-    addEye(key, options.eye);
-  }
+  if (method.uses("closure")) key.add("closure", nameOf(kClosureNames, options.closure));
+  if (method.uses("seed")) key.add("seed", fmt::format("{}", options.seed));
+  if (method.uses("resolution")) key.add("resolution", fmt::format("{}", options.resolution));
+  if (method.uses("symmetrize")) key.add("symmetrize", onOff(options.symmetrize));
+  if (method.uses("near")) key.add("near", options.near_exact ? "exact" : "off");
+  if (method.uses("random-turns")) addTurns(key, options.random_turns);
+  if (method.uses("eye")) addEye(key, options.eye);
   if (!options.exact_emitters) key.add("emitters", "estimated");
   key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
   key.add("mesh", mesh_hash);

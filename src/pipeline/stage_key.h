@@ -41,7 +41,7 @@ class StageKey {
 StageKey meshKey(const MeshOptions& options, const Scene& scene);
 StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh);
 /// The part of a key that the method used depends on: `auto` has the options of all methods.
-/// Method: "exact", "rays" or "hemicube".
+/// Method: a word of kFactorsFromNames.
 StageKey usedKey(const StageKey& factors_key, std::string_view method);
 /// `factors_key`: a key that usedKey() returned; so, too, below.
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,

@@ -135,15 +135,13 @@ bool Pipeline::factorsFit(const FormFactors& factors, const std::string& factors
   const std::string method = nameOf(kFactorsFromNames, factors.method);
   const StageKey made_with = usedKey(StageKey(factors_key), method);
   if (made_with.text() != usedKey(key, method).text()) return false;
-  const FormFactorMethod made_by =
-      named(kMethodNames, method).value_or(FormFactorMethod::automatic);
   if (options_.factors.method != FormFactorMethod::automatic) {
-    return options_.factors.method == made_by;
+    return options_.factors.method == factors.method;
   }
-  // Exact form factors that are there are better than those of any method that `auto` might pick.
-  if (made_by == FormFactorMethod::exact) return true;
+  // What is there is as good as all that `auto` might pick.
+  if (factors.method == kAutomaticChoices.front()) return true;
   plan = planFactors();
-  return plan->method == made_by;
+  return plan->method == factors.method;
 }
 
 FormFactorPlan Pipeline::planFactors() const {

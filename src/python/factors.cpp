@@ -216,6 +216,9 @@ void bindFactors(py::module_& module) {
                              [](const H& h) { return h.factors.matrix.isSymmetric(); });
   type.def_property_readonly("report", [](const H& h) { return dictOf(h.factors.report); });
   module.def("form_factors", &formFactors);
+  module.def("options_of_method", [](const std::string& word) {
+    return traitsOf(named(kFactorsFromNames, word).value()).options;
+  });
   module.def("csr_arrays", &csrArrays);
   module.def("from_csr", &fromCsr);
   module.def("read_matrix", &readMatrix);

@@ -4,48 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace radiosity {
-namespace {
-
-/// Rows are off 1 by rounding and tolerance, and bright rooms multiply that.
-constexpr double kLeastImbalance = 0.01;
-/// Of hemicubes, which represent a patch by a point: their form factors are off by 8% to 30%
-/// (src/formfactor/README.md), and an account sums over many of them.
-constexpr double kImbalanceOfHemicubes = 0.1;
-
-}  // namespace
 
 double mostImbalance(const FormFactors& factors) {
-  switch (factors.method) {
-    case FactorsFrom::exact:
-    case FactorsFrom::rays:
-      return std::max(kLeastImbalance, factors.report.error_figure);
-    case FactorsFrom::hemicube:
-      return kImbalanceOfHemicubes;
-    case FactorsFrom::matrix:
-    case FactorsFrom::file:
-      break;
-  }
-  return std::numeric_limits<double>::infinity();
+  return std::max(traitsOf(factors.method).imbalance, factors.report.error_figure);
 }
 
-std::string imbalanceCure(FactorsFrom method) {
-  switch (method) {
-    case FactorsFrom::exact:
-      return "give --closure enforce, or a smaller --tolerance";
-    case FactorsFrom::rays:
-      return "give a smaller --tolerance, or --method exact";
-    case FactorsFrom::hemicube:
-      return "give --symmetrize, a higher --resolution, or --method exact";
-    case FactorsFrom::matrix:
-    case FactorsFrom::file:
-      break;
-  }
-  return "correct the matrix, or its areas (--areas)";
-}
+std::string imbalanceCure(FormFactorMethod method) { return std::string(traitsOf(method).cure); }
 
 void judgeBalance(const FormFactors& factors, std::span<const double> emission,
                   SolveSummary& summary) {

@@ -155,7 +155,7 @@ FormFactors factorsOfMatrix(ExchangeMatrix matrix, std::vector<double> sky,
   factors.sky = std::move(sky);
   factors.backs = std::move(backs);
   factors.report.closed = isClosed(factors.sky);
-  factors.method = FactorsFrom::matrix;
+  factors.method = FormFactorMethod::matrix;
   noteSums(factors);
   if (has_areas) noteReciprocity(factors);
   return factors;
@@ -165,7 +165,7 @@ FormFactors factorsOfFile(const MatrixFile& file) {
   FormFactors factors =
       factorsOfMatrix(*file.factors.matrix, file.factors.sky, file.factors.backs, file.has_areas);
   factors.error = file.factors.error;
-  factors.method = FactorsFrom::file;
+  factors.method = FormFactorMethod::file;
   return factors;
 }
 

@@ -307,7 +307,7 @@ TEST(ExactFactors, AutoReportsItsMethodAndTheReason) {
   Progress silent;
   const PatchMesh mesh = test::roomWithBlock(3).build();
   const FormFactors f = test::computed(mesh, FormFactorOptions());
-  EXPECT_EQ(f.method, FactorsFrom::exact);
+  EXPECT_EQ(f.method, FormFactorMethod::exact);
   // Exact is taken without a look at rays if it is fast, as it is here.
   EXPECT_EQ(f.report.method_reason.rfind("it takes ", 0), 0u) << f.report.method_reason;
 }

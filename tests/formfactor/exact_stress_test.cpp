@@ -37,7 +37,7 @@ FormFactors compute(const PatchMesh& mesh, FormFactorMethod method, double toler
 
 /// Invariants of any row of either method.
 void expectSane(const PatchMesh& mesh, const FormFactors& f, const std::string& what) {
-  const bool exact = f.method == FactorsFrom::exact;
+  const bool exact = f.method == FormFactorMethod::exact;
   ASSERT_EQ(f.fronts.size(), mesh.size());
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     double sum = 0;

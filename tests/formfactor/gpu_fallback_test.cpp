@@ -136,7 +136,7 @@ TEST(GpuFallback, TheProcessorDrawsTheRestOfALostDevice) {
     HemicubeScene scene(mesh, options);
     scene.gpu = std::make_unique<FailingEye>(scene.rows, lives);
     const FormFactors seen =
-        hemicubeFactors(mesh, scene, {}, HemicubeEstimate(), options, silent, nullptr, nullptr);
+        hemicubeFactors(mesh, scene, {}, RowMemory(), options, silent, nullptr, nullptr);
     EXPECT_EQ(seen.report.hemicubes, expected.report.hemicubes);
     EXPECT_EQ(seen.report.pixels, expected.report.pixels);
     EXPECT_TRUE(seen.report.closed);
@@ -204,8 +204,8 @@ TEST(GpuFallback, TheProcessorDrawsASceneThatTheDeviceCannotHold) {
   for (const EyeChoice choice : {EyeChoice::gl, EyeChoice::automatic}) {
     HemicubeScene scene(mesh, smallHemicubes());
     scene.gpu = openGpuEye(choice, scene.rows.scene(), mesh, scene.rows.weights(), FullEyes(true));
-    const FormFactors seen = hemicubeFactors(mesh, scene, {}, HemicubeEstimate(), smallHemicubes(),
-                                             silent, nullptr, nullptr);
+    const FormFactors seen =
+        hemicubeFactors(mesh, scene, {}, RowMemory(), smallHemicubes(), silent, nullptr, nullptr);
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       EXPECT_EQ(seen.matrix.at(0, i), expected.matrix.at(0, i));
     }

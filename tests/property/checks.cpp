@@ -209,7 +209,7 @@ class Checker {
   }
 
   static double mostImbalance(const FormFactors& f) {
-    if (f.method == FactorsFrom::hemicube) return kImbalanceOfHemicubes;
+    if (f.method == FormFactorMethod::hemicube) return kImbalanceOfHemicubes;
     return std::max(kLeastImbalance, f.report.error_figure);
   }
 
@@ -280,7 +280,7 @@ class Checker {
     if (!(error <= 4 * stated + tight + kRounding)) {
       fault("matrix " + by, "error {:.3g}, stated {:.3g}", error, stated);
     }
-    if (f.method == FactorsFrom::rays && f.report.rays.short_rows == 0 &&
+    if (f.method == FormFactorMethod::rays && f.report.rays.short_rows == 0 &&
         !(error <= 4 * kRays + tight)) {
       fault("tolerance " + by, "error {:.3g}, asked for {:.3g}, no row short", error, kRays);
     }

@@ -223,7 +223,7 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
     f.error.push_back(1e-6 / double(i + 1));
   }
   f.backs_by_surface = {0.001, 0.25};
-  f.method = FactorsFrom::hemicube;
+  f.method = FormFactorMethod::hemicube;
   FormFactorReport& r = f.report;
   r.hemicubes = 1;
   r.empty_rows = 2;

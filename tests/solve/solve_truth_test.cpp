@@ -220,7 +220,8 @@ TEST(SolveEnergy, ThatDoesNotBalanceIsNotUsable) {
   const std::vector<double> area(6, 1.0), rho(6, .5);
   std::vector<double> emission(6, 0.0);
   emission[0] = 1;
-  for (const FactorsFrom method : {FactorsFrom::exact, FactorsFrom::rays, FactorsFrom::hemicube}) {
+  for (const FormFactorMethod method :
+       {FormFactorMethod::exact, FormFactorMethod::rays, FormFactorMethod::hemicube}) {
     auto factors = test::symmetricFactorsFrom(f, area);
     factors.method = method;
     Progress quiet;

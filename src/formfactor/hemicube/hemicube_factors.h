@@ -5,13 +5,10 @@
 #include <memory>
 #include <optional>
 
-#include "base/processes.h"
 #include "formfactor/hemicube/gpu_eye.h"
 #include "formfactor/hemicube/near_pairs.h"
 #include "formfactor/hemicube/row_builder.h"
-#include "formfactor/known_rows.h"
-#include "formfactor/row_memory.h"
-#include "radiosity/form_factors.h"
+#include "formfactor/method.h"
 
 namespace radiosity {
 
@@ -34,14 +31,16 @@ HemicubeEstimate estimateHemicubes(const PatchMesh& mesh, const HemicubeScene& s
                                    const FormFactorOptions& options, Progress& progress);
 
 /// Raw rows, as they were seen but for the exchange in `known`, rows of patches, unless
-/// `symmetrize`. See computeFormFactors(). `scene` is the mesh's, `estimate` the scene's;
-/// `journal`, which keeps what was seen, and `processes` may be null.
+/// `symmetrize`. See computeFormFactors(). `scene` is the mesh's; `journal`, which keeps what was
+/// seen, and `processes` may be null.
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
-                            std::vector<KnownRow> known, const HemicubeEstimate& estimate,
+                            std::vector<KnownRow> known, const RowMemory& memory,
                             const FormFactorOptions& options, Progress& progress,
                             RowJournal* journal, Processes* processes);
 
-/// For the other processes, while process 0 is in hemicubeFactors(): makes the rows of this one.
+std::unique_ptr<PreparedMethod> prepareHemicubes(const PatchMesh& mesh,
+                                                 const FormFactorOptions& options);
+
 ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
                                      Processes& processes, Progress& progress, RowJournal* journal);
 

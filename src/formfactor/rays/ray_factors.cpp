@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "base/figure_text.h"
+#include "base/made.h"
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/scratch_rows.h"
 #include "formfactor/closed_rows.h"
+#include "formfactor/rays/ray_model.h"
 #include "formfactor/rays/ray_rounds.h"
 #include "formfactor/rays/shared_rays.h"
 #include "formfactor/row_accounts.h"
@@ -269,34 +273,69 @@ ClosedRows closedRows(const PatchMesh& mesh, const RayScene& scene, const std::v
   return closed;
 }
 
-}  // namespace
+/// Exact rows may be this much work for each ray: about half of what it takes.
+constexpr double kExactRowWork = 7;
 
-FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
-                       std::vector<KnownRow> rows_known, const RayEstimate& estimate,
-                       const FormFactorOptions& options, Progress& progress, RowJournal* journal,
-                       Processes* processes) {
+class Rays final : public PreparedMethod {
+ public:
+  Rays(const PatchMesh& mesh, const FormFactorOptions& options)
+      : PreparedMethod(FormFactorMethod::rays, mesh, options) {}
+  std::optional<RoomForExactRows> roomForExactRows() const override {
+    return RoomForExactRows{kExactRowWork * estimate_.rays, estimate_.memory.bytes};
+  }
+
+ private:
+  Cost foresee(Progress& progress) override;
+  FormFactors make(KnownRows exact, Progress& progress, RowJournal* journal,
+                   Processes* processes) const override;
+
+  std::optional<RayScene> scene_;
+  RayEstimate estimate_;
+};
+
+Rays::Cost Rays::foresee(Progress& progress) {
+  progress.begin("preparing", 1);
+  const Stopwatch watch;
+  scene_.emplace(mesh(), options().seed);
+  seconds_preparing_ = watch.seconds();
+  progress.advance();
+  progress.end();
+  progress.check();
+  estimate_ = estimateRays(*scene_, options(), progress);
+  Cost cost{{}, estimate_.memory};
+  FormFactorPlan& plan = cost.plan;
+  plan.matrix_bytes = estimate_.matrix_bytes;
+  plan.seconds = estimate_.seconds;
+  plan.tolerance = estimate_.tolerance;
+  // Error squared falls as n^-p with the number n of rays, p = kUsualOrder.
+  plan.refining = 1;
+  plan.refining_order = 2 / kUsualOrder;
+  if (plan.tolerance > tolerance()) plan.seconds_to_tolerance = estimate_.seconds_to_tolerance;
+  return cost;
+}
+
+FormFactors Rays::make(KnownRows exact, Progress& progress, RowJournal* journal,
+                       Processes* processes) const {
+  const RayScene& scene = made(scene_);
   const std::size_t n = scene.size();
   FormFactors result;
-  result.method = FactorsFrom::rays;
   FormFactorReport& report = result.report;
-  report.polygons = mesh.polygons.size();
-  report.estimated_bytes = estimate.memory.bytes;
-  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(estimate.memory, options, n);
+  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(memory(processes), options(), n);
   std::vector<double> area(n);
   for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
   report.rays.triangles = scene.caster().triangles();
-  if (!options.exact_rows.empty()) report.exact_rows = rows_known.size();
-  const KnownEntries known(std::move(rows_known), scene.position());
+  report.rays.seconds_prepare = seconds_preparing_ + exact.seconds;
+  const KnownEntries known(std::move(exact.rows), scene.position());
 
-  RayAim aim(options);
-  aim.foreseen_rays = estimate.rays;
+  RayAim aim(options());
+  aim.foreseen_rays = estimate_.rays;
   std::vector<RayRow> rows =
       castRows(scene, known, aim, report.rays, progress, journal, scratch.get(), processes);
-  noteLoosened(options, report);
-  const ClosedRows closed = closedRows(mesh, scene, rows, report);
-  result.matrix =
-      ExchangeMatrix::symmetric(std::move(area), scene.order(), options.storedPrecision(), scratch);
+  noteLoosened(options(), report);
+  const ClosedRows closed = closedRows(mesh(), scene, rows, report);
+  result.matrix = ExchangeMatrix::symmetric(std::move(area), scene.order(),
+                                            options().storedPrecision(), scratch);
   result.fronts.assign(n, 0.0);
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
@@ -310,17 +349,24 @@ FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene,
   progress.check();
   const double closing = clockSeconds();
   report.rays.seconds_merge += closing - storing;
-  close(closed, uncertain, options.closure, beside, result, progress);
+  close(closed, uncertain, options().closure, beside, result, progress);
   closed.balance(result);
-  accountForBacks(mesh, scene.order(), result.matrix.area(), beside.seen_backs, result);
+  accountForBacks(mesh(), scene.order(), result.matrix.area(), beside.seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
   if (processes != nullptr) share(*processes, progress, result.matrix);
   return result;
 }
 
-ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, std::uint64_t seed, Processes& processes,
-                                Progress& progress) {
-  castForOthers(processes, RayScene(mesh, seed), progress);
+}  // namespace
+
+std::unique_ptr<PreparedMethod> prepareRays(const PatchMesh& mesh,
+                                            const FormFactorOptions& options) {
+  return std::make_unique<Rays>(mesh, options);
+}
+
+ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
+                                Processes& processes, Progress& progress, RowJournal* /*journal*/) {
+  castForOthers(processes, RayScene(mesh, options.seed), progress);
   return receiveRows(processes);
 }
 

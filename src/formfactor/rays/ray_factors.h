@@ -2,12 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
-#include "base/processes.h"
+#include "formfactor/method.h"
 #include "formfactor/rays/ray_scene.h"
-#include "formfactor/row_memory.h"
-#include "radiosity/form_factors.h"
 
 namespace radiosity {
 
@@ -27,16 +24,14 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
 /// Casts rows in rounds. Each is continued until its expected error, merged with the other rows'
 /// counts, is below options.toleranceOf(rays) times its norm, or times that of a usual row if that
 /// is larger: the little that an open body sees of itself is not worth a thousand times the rays of
-/// the rest. Of sources the sky counts in norms (FormFactorOptions::skyWeight()). `known`: rows
-/// that need none. `journal` and `processes` may be null. Throws RunError if the estimate exceeds
-/// options.memory_limit.
-FormFactors rayFactors(const PatchMesh& mesh, const RayScene& scene, std::vector<KnownRow> known,
-                       const RayEstimate& estimate, const FormFactorOptions& options,
-                       Progress& progress, RowJournal* journal, Processes* processes);
+/// the rest. Of sources the sky counts in norms (FormFactorOptions::skyWeight()). Rows that are
+/// known need no rays.
+std::unique_ptr<PreparedMethod> prepareRays(const PatchMesh& mesh,
+                                            const FormFactorOptions& options);
 
-/// For the other processes, while process 0 is in rayFactors(): casts a share of the rays. Returns
-/// the rows that fell to this one once process 0 had merged all.
-ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, std::uint64_t seed, Processes& processes,
-                                Progress& progress);
+/// Casts a share of the rays. Returns the rows that fell to this process once process 0 had merged
+/// all.
+ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
+                                Processes& processes, Progress& progress, RowJournal* journal);
 
 }  // namespace radiosity

@@ -300,12 +300,11 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
 
 def _unused(options: dict, method: str) -> List[str]:
     """Options that are not what they are by default, and are of other methods than the one that ran."""
-    unused: dict = {"resolution": 256, "eye": "cpu", "near_exact": False, "symmetrize": False}
-    if method == "hemicube":
-        unused = {"tolerance": None, "closure": "report"}
-    elif method == "exact":
-        unused["seed"] = 1
-    return [name for name, usual in unused.items() if options[name] != usual]
+    usual: dict = {"tolerance": None, "closure": "report", "resolution": 256, "eye": "cpu", "near_exact": False,
+                   "symmetrize": False, "seed": 1}
+    used = _core.options_of_method(method)
+    return [name for name in usual
+            if options[name] != usual[name] and name.replace("near_exact", "near") not in used]
 
 
 def _checked(matrix: Any) -> Any:

@@ -10,9 +10,12 @@
 #include <optional>
 
 #include "base/figure_text.h"
+#include "base/made.h"
 #include "base/processor_clock.h"
 #include "base/thread_order.h"
 #include "formfactor/closed_rows.h"
+#include "formfactor/exact/assembly/exact_scene.h"
+#include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/assembly/shared_tasks.h"
 #include "formfactor/exact/assembly/task_journal.h"
 #include "formfactor/exact/clip_kernels.h"
@@ -245,33 +248,68 @@ void close(const PatchOrder& order, const ClosedRows& closed, const UncertainEnt
   }
 }
 
-}  // namespace
+/// A plan clips pairs for this long, in seconds of processors.
+constexpr double kClipSeconds = 0.25;
 
-FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
-                         const ExactKernels& kernels, const ExactEstimate& estimate,
-                         const FormFactorOptions& options, Progress& progress, RowJournal* journal,
-                         Processes* processes) {
-  const std::size_t n = mesh.size();
-  const RowMemory memory = processes != nullptr
-                               ? shareOf(estimate.memory, estimate.matrix_bytes, processes->size())
-                               : estimate.memory;
+class Exact final : public PreparedMethod {
+ public:
+  Exact(const PatchMesh& mesh, const FormFactorOptions& options)
+      : PreparedMethod(FormFactorMethod::exact, mesh, options) {}
+
+ private:
+  Cost foresee(Progress& progress) override;
+  FormFactors make(KnownRows known, Progress& progress, RowJournal* journal,
+                   Processes* processes) const override;
+
+  std::optional<ExactScene> scene_;
+  std::optional<RowSample> sample_;  ///< of the scene, while it is planned
+  std::optional<ExactKernels> kernels_;
+  ExactEstimate estimate_;
+};
+
+Exact::Cost Exact::foresee(Progress& progress) {
+  if (!scene_) {
+    const Stopwatch watch;
+    progress.begin("preparing", ExactScene::kSteps);
+    scene_.emplace(mesh(), progress);
+    progress.end();
+    seconds_preparing_ += watch.seconds();
+  }
+  RowSample& sample = sample_ ? *sample_ : sample_.emplace();
+  sampleRows(*scene_, tolerance(), sample, progress);
+  estimate_ = estimateExact(*scene_, sample, options());
+  if (!kernels_) {
+    const Stopwatch watch;
+    kernels_.emplace(*scene_, options());
+    seconds_preparing_ += watch.seconds();
+  }
+  Cost cost{{}, estimate_.memory};
+  cost.plan.matrix_bytes = estimate_.matrix_bytes;
+  cost.plan.seconds = exactSeconds(*scene_, *kernels_, sample, options(), kClipSeconds, progress);
+  cost.plan.tolerance = tolerance();
+  cost.plan.refining = estimate_.work > 0 ? estimate_.refining / estimate_.work : 0.0;
+  sample_.reset();
+  return cost;
+}
+
+FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* journal,
+                        Processes* processes) const {
+  const ExactScene& scene = made(scene_);
+  const ExactKernels& kernels = made(kernels_);
+  const std::size_t n = mesh().size();
   FormFactors result;
-  result.method = FactorsFrom::exact;
   FormFactorReport& report = result.report;
-  report.polygons = mesh.polygons.size();
-  report.simd_target = clipKernels(options.simd).target;
+  report.simd_target = clipKernels(options().simd).target;
   report.empty_rows = n - scene.order.ranked;
-  report.estimated_bytes = memory.bytes;
-  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(memory, options, n);
+  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(memory(processes), options(), n);
 
-  std::vector<Index> emitting = emittersOf(options, mesh.unknowns());
-  std::size_t recheck_every =
-      recheckEvery(estimate.occluded_pairs, options.toleranceOf(FormFactorMethod::exact));
+  std::vector<Index> emitting = emittersOf(options(), mesh().unknowns());
+  std::size_t recheck_every = recheckEvery(estimate_.occluded_pairs, tolerance());
   if (processes != nullptr) {
     processes->broadcastValue(recheck_every);
     processes->broadcastArray(emitting);
   }
-  RowStore rows(mesh, scene, options, emitting, scratch);
+  RowStore rows(mesh(), scene, options(), emitting, scratch);
   const RowSums sums = fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks,
                                 journal, processes, progress);
   const auto check = [&] { progress.check(); };
@@ -285,19 +323,27 @@ FormFactors exactFactors(const PatchMesh& mesh, const ExactScene& scene,
   reportCounts(scene, sums, report.exact);
   noteFallbacks(sums.occluded, report);
   setErrors(scene.order, sums.error, kernels.closed_form, result);
-  ClosedRows closed(mesh, false);
-  setAccounts(mesh, scene.order, options.toleranceOf(FormFactorMethod::exact), closed, result);
-  findUnexplained(mesh, scene.order, kernels.closed_form, result);
-  if (closed.any() && options.closure != ClosureMode::off) {
-    close(scene.order, closed, rows.uncertain, options.closure, result, progress);
+  ClosedRows closed(mesh(), false);
+  setAccounts(mesh(), scene.order, tolerance(), closed, result);
+  findUnexplained(mesh(), scene.order, kernels.closed_form, result);
+  if (closed.any() && options().closure != ClosureMode::off) {
+    close(scene.order, closed, rows.uncertain, options().closure, result, progress);
   }
   progress.begin("finishing", 1);
-  accountForBacks(mesh, canonicalOrder(mesh), mesh.area, rows.seen_backs, result);
+  accountForBacks(mesh(), canonicalOrder(mesh()), mesh().area, rows.seen_backs, result);
   progress.advance();
   progress.end();
   progress.check();
+  report.exact.seconds_prepare = seconds_preparing_;
   report.exact.seconds_finish = finishing.seconds();
   return result;
+}
+
+}  // namespace
+
+std::unique_ptr<PreparedMethod> prepareExact(const PatchMesh& mesh,
+                                             const FormFactorOptions& options) {
+  return std::make_unique<Exact>(mesh, options);
 }
 
 ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,

@@ -1,0 +1,92 @@
+// The methods by which form factors are made, and what others need to know of each.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+
+#include "radiosity/base.h"
+
+namespace [[gnu::visibility("default")]] radiosity {
+
+/// What makes, or has made, form factors.
+enum class FormFactorMethod {
+  automatic,  ///< exact or rays, as a sample of rows decides; the report says why
+  exact,      ///< area to area, with blocked parts clipped off
+  rays,       ///< area to area, by counting cosine-distributed rays
+  hemicube,   ///< seen from one eye at each patch's centroid (Cohen & Greenberg 1985)
+  matrix,     ///< given as a matrix (factorsOfMatrix())
+  file        ///< read from a file of form factors alone (factorsOfFile())
+};
+
+struct MethodTraits {
+  FormFactorMethod method;
+  std::string_view word;       ///< on the command line, in keys, files and reports
+  std::string_view summary{};  ///< what it computes; empty: it cannot be asked for
+  /// The words of options that it uses and others may not, as keys have them.
+  std::array<std::string_view, 8> options{};
+  double tolerance = 0;   ///< FormFactorOptions::tolerance by default; 0: it has none
+  bool symmetric = true;  ///< A_i F_ij = A_j F_ji, without FormFactorOptions::symmetrize
+  /// Rows are of unknowns, made by process 0 out of what all processes count. Others make rows of
+  /// patches, each in one process, and sum them over clusters.
+  bool counts_unknowns = false;
+  /// The share of its light that an energy account may be off, and the cure if it is off by more.
+  double imbalance = std::numeric_limits<double>::infinity();
+  std::string_view cure{};
+
+  constexpr bool uses(std::string_view option) const {
+    return std::find(options.begin(), options.end(), option) != options.end();
+  }
+};
+
+inline constexpr std::array kMethods{
+    MethodTraits{.method = FormFactorMethod::automatic,
+                 .word = "auto",
+                 .summary = "exact or rays, by what a sample of rows takes; the report says why",
+                 .options = {"tolerance", "closure", "seed", "resolution", "symmetrize", "near",
+                             "random-turns", "eye"}},
+    // Rows are off 1 by rounding and tolerance, and bright rooms multiply that.
+    MethodTraits{.method = FormFactorMethod::exact,
+                 .word = "exact",
+                 .summary = "area to area, hidden parts clipped off",
+                 .options = {"tolerance", "closure"},
+                 .tolerance = 1e-3,
+                 .imbalance = 0.01,
+                 .cure = "give --closure enforce, or a smaller --tolerance"},
+    MethodTraits{.method = FormFactorMethod::rays,
+                 .word = "rays",
+                 .summary = "area to area, by counting rays",
+                 .options = {"tolerance", "closure", "seed"},
+                 .tolerance = 1e-2,
+                 .counts_unknowns = true,
+                 .imbalance = 0.01,
+                 .cure = "give a smaller --tolerance, or --method exact"},
+    // A patch is represented by a point: form factors are off by 8% to 30%
+    // (src/formfactor/README.md), and an account sums over many of them.
+    MethodTraits{.method = FormFactorMethod::hemicube,
+                 .word = "hemicube",
+                 .summary = "seen from one point a patch",
+                 .options = {"seed", "resolution", "symmetrize", "near", "random-turns", "eye"},
+                 .symmetric = false,
+                 .imbalance = 0.1,
+                 .cure = "give --symmetrize, a higher --resolution, or --method exact"},
+    MethodTraits{.method = FormFactorMethod::matrix,
+                 .word = "matrix",
+                 .cure = "correct the matrix, or its areas (--areas)"},
+    MethodTraits{.method = FormFactorMethod::file,
+                 .word = "file",
+                 .cure = "correct the matrix, or its areas (--areas)"}};
+
+/// The methods that `automatic` chooses from, the most accurate one first.
+inline constexpr std::array kAutomaticChoices{FormFactorMethod::exact, FormFactorMethod::rays};
+
+constexpr const MethodTraits& traitsOf(FormFactorMethod method) {
+  for (const MethodTraits& traits : kMethods) {
+    if (traits.method == method) return traits;
+  }
+  throw std::logic_error("a method without traits");
+}
+
+}  // namespace radiosity

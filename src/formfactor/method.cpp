@@ -1,0 +1,45 @@
+#include "formfactor/method.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "formfactor/cluster_factors.h"
+
+namespace radiosity {
+
+FormFactorPlan PreparedMethod::plan(Progress& progress) {
+  auto [plan, memory] = foresee(progress);
+  if (mesh_.clusters && !traits_.counts_unknowns) {
+    const bool symmetric = options_.givesSymmetric();
+    const Precision precision = options_.storedPrecision();
+    memory.bytes += clusterFactorsBytes(mesh_, symmetric, precision, plan.matrix_bytes);
+    plan.matrix_bytes =
+        std::min(plan.matrix_bytes, clusterMatrixBytes(mesh_, symmetric, precision));
+  }
+  memory_ = memory;
+  matrix_bytes_ = plan.matrix_bytes;
+  plan.method = traits_.method;
+  plan.bytes = memory.bytes;
+  plan.scratch_bytes = memory.scratch_bytes;
+  return plan;
+}
+
+RowMemory PreparedMethod::memory(const Processes* processes) const {
+  if (processes == nullptr || traits_.counts_unknowns) return memory_;
+  return shareOf(memory_, matrix_bytes_, processes->size());
+}
+
+FormFactors PreparedMethod::compute(KnownRows known, Progress& progress, RowJournal* journal,
+                                    Processes* processes) const {
+  std::optional<std::size_t> exact_rows;
+  if (roomForExactRows() && !options_.exact_rows.empty()) exact_rows = known.rows.size();
+  FormFactors result = make(std::move(known), progress, journal, processes);
+  result.method = traits_.method;
+  result.report.polygons = mesh_.polygons.size();
+  result.report.estimated_bytes = memory(processes).bytes;
+  result.report.exact_rows = exact_rows;
+  if (mesh_.clusters && !traits_.counts_unknowns) return clusterFactors(result, mesh_, progress);
+  return result;
+}
+
+}  // namespace radiosity

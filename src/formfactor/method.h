@@ -1,0 +1,91 @@
+// What a method of form factors is: a mesh prepared for it, the plan, the rows. Each has a folder
+// of its own and an entry in methods.cpp; what others need to know of it stands in
+// radiosity/form_factor_method.h.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/processes.h"
+#include "formfactor/known_rows.h"
+#include "formfactor/row_memory.h"
+#include "radiosity/form_factors.h"
+
+namespace radiosity {
+
+/// Exact rows, of those that emit, beside which a method makes all others.
+struct KnownRows {
+  std::vector<KnownRow> rows;
+  double seconds = 0;  ///< for preparing and making them
+};
+
+/// What exact rows may take beside a method that can do with them.
+struct RoomForExactRows {
+  double work = 0;        ///< at most (foreseen_work.h)
+  std::size_t bytes = 0;  ///< held by others while they are made
+};
+
+/// A mesh prepared for one method.
+class PreparedMethod {
+ public:
+  /// `mesh` is kept by reference.
+  PreparedMethod(FormFactorMethod method, const PatchMesh& mesh, const FormFactorOptions& options)
+      : mesh_(mesh), options_(options), traits_(traitsOf(method)) {}
+  virtual ~PreparedMethod() = default;
+  PreparedMethod(const PreparedMethod&) = delete;
+  PreparedMethod& operator=(const PreparedMethod&) = delete;
+
+  /// Prepares the mesh and foresees the cost; a second call goes on where the first was Cancelled.
+  FormFactorPlan plan(Progress& progress);
+  /// Computes what was planned, any number of times. `journal` and `processes` may be null; of
+  /// `processes` the others are in MethodEntry::rows_for_others.
+  FormFactors compute(KnownRows known, Progress& progress, RowJournal* journal,
+                      Processes* processes) const;
+
+  /// Seconds of plan() for what compute() needs.
+  double secondsPreparing() const { return seconds_preparing_; }
+  /// Of a method that was planned; nothing if it takes no known rows.
+  virtual std::optional<RoomForExactRows> roomForExactRows() const { return std::nullopt; }
+
+ protected:
+  const PatchMesh& mesh() const { return mesh_; }
+  const FormFactorOptions& options() const { return options_; }
+  double tolerance() const { return options_.toleranceOf(traits_.method); }
+  /// As foreseen; of several processes, that of process 0 where rows stay with those that make
+  /// them.
+  RowMemory memory(const Processes* processes) const;
+
+  /// Seconds and tolerance of the rows, the memory in which they are made and, of that, the
+  /// matrix.
+  struct Cost {
+    FormFactorPlan plan;
+    RowMemory memory;
+  };
+  double seconds_preparing_ = 0;
+
+ private:
+  virtual Cost foresee(Progress& progress) = 0;
+  virtual FormFactors make(KnownRows known, Progress& progress, RowJournal* journal,
+                           Processes* processes) const = 0;
+
+  const PatchMesh& mesh_;
+  FormFactorOptions options_;
+  const MethodTraits& traits_;
+  RowMemory memory_;
+  std::size_t matrix_bytes_ = 0;
+};
+
+struct MethodEntry {
+  FormFactorMethod method;
+  std::unique_ptr<PreparedMethod> (*prepare)(const PatchMesh&, const FormFactorOptions&);
+  /// For the other processes, while process 0 is in compute(): makes the rows that fall to this
+  /// one.
+  ExchangeMatrix (*rows_for_others)(const PatchMesh&, const FormFactorOptions&, Processes&,
+                                    Progress&, RowJournal*);
+};
+/// Of a method that can be asked for, and not automatic.
+const MethodEntry& entryOf(FormFactorMethod method);
+
+}  // namespace radiosity
