@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "radiosity/base.h"
@@ -31,8 +32,6 @@ class StageKey;
 // Internal: for the program under mpirun (base/processes.h is not installed).
 class Processes;
 enum class SharedTask : std::uint32_t;
-
-enum class Stage { mesh, form_factors, solution, gather, elements, heat, basis };
 
 enum class StageAction {
   reused,      ///< taken from a results file
@@ -253,12 +252,21 @@ class Pipeline {
   void openReused(const std::string& path);
   void overrideScene(const SceneOptions& overrides);
 
+  // One way for every stage (pipeline/stages/get_or_make.h).
+  template <class T, class Make>
+  const T& getOrMake(const StageOf<T>& stage, const StageKey& key, const Make& make);
+  template <class T, class Make>
+  const T& makeAnew(const StageOf<T>& stage, const StageKey& key, const Make& make);
+  template <class T>
+  const T& takeStored(const StageOf<T>& stage, StageAction action = StageAction::reused);
   std::string why(const std::string& stored_key, const StageKey& key) const;
-  void tell(Stage stage, StageAction action, const std::string& detail = {}) const;
+  void tell(Stage stage, StageAction action, const std::string& detail) const;
   void computed(Stage stage, const std::string& reason, double seconds);
   void discardFrom(Stage first);
+  std::optional<std::string> inputNow(std::string_view name);
+  std::string changedInputs(const StageKey& key);
 
-  bool factorsFit(const FormFactors& factors, const std::string& factors_key, const StageKey& key,
+  bool factorsFit(const Keyed<FormFactors>& factors, const StageKey& key,
                   std::optional<FormFactorPlan>& plan) const;
   FormFactorPlan planFactors() const;
   FormFactors computeFactors(std::optional<FormFactorPlan> plan, const StageKey& key);
@@ -271,32 +279,10 @@ class Pipeline {
   void requireOwnMesh(bool reused) const;
   const PatchMaterials& materialsOfMesh();
 
-  /// The contents of the results file that was opened or written last.
-  struct OnDisk {
-    std::string path;
-    std::string state;   ///< fileState() then
-    bool scene = false;  ///< it has the current scene
-    /// Empty: none.
-    std::string mesh_key, factors_key, solution_key, elements_key, gather_key, heat_key, basis_key;
-  };
-  static OnDisk onDisk(const std::string& path, const Results& results, bool scene);
-
-  template <class T>
-  bool keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
-            bool fits, const std::string& why_not);
-  template <class T>
-  bool keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
-            const StageKey& key, bool there = true);
-  bool keepFactors();
-  bool keepSolution();
   StageKey elementsKeyNow() const;
   Elements elementsOf(std::span<const std::uint8_t> wanted, const StageKey& key);
-  bool keepElements();
-  bool keepGathered();
-  bool keepHeat();
-  bool keepBasis();
-  const LightBasis& takeStoredBasis();
   void dropEmptySolution();
+  void wrote(const std::string& path);
 
   Processes* processes_ = nullptr;  ///< null: this process alone
   std::unique_ptr<JournalFile> journal_;
@@ -309,7 +295,12 @@ class Pipeline {
   std::string name_;    ///< of the scene, for messages
   std::string source_;  ///< the results file that stages come from
   std::string source_state_;  ///< when it was read
-  OnDisk on_disk_;
+  /// The results file that was opened or written last.
+  struct {
+    std::string path;
+    std::string state;        ///< fileState() then
+    bool same_scene = false;  ///< it has the current scene
+  } on_disk_;
   std::string saved_;          ///< the last file that save() or checkpoint() wrote
   std::string factors_asked_;  ///< the key that the form factors at hand are known to fit
   bool from_results_ = false;
@@ -320,8 +311,8 @@ class Pipeline {
   bool replaces_ = false;
 };
 
-// ---- Keys of stages made without a pipeline, for a results file (Results::mesh_key and the
-// others). A pipeline that opens the file with the same options reuses the stages.
+// ---- Keys of stages made without a pipeline, for a results file (Keyed::key). A pipeline that
+// opens the file with the same options reuses the stages.
 
 std::string keyOfMesh(const MeshOptions& options, const Scene& scene);
 std::string keyOfFactors(const FormFactorOptions& options, const PatchMesh& mesh);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "radiosity/elements.h"
@@ -23,28 +24,69 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-/// The contents of a results file; an absent stage was not computed or was dropped. Each stage has
-/// a `key`: a text of the options that made it and of the stage before it. A stage is reused only
-/// if the key matches.
+/// The value of a stage, if there is one, and its key: a text of the options and inputs that made
+/// it. A stage is reused only if its key is the one asked for.
+template <class T>
+struct Keyed {
+  std::optional<T> value;
+  std::string key;
+
+  explicit operator bool() const { return value.has_value(); }
+  T& operator*() { return *value; }
+  const T& operator*() const { return *value; }
+  T* operator->() { return &*value; }
+  const T* operator->() const { return &*value; }
+};
+
+/// The contents of a results file; an absent stage was not computed or was dropped.
 struct Results {
   std::string version;  ///< of the program that wrote it
   std::optional<Scene> scene;
-  std::optional<MeshResult> mesh;
-  std::string mesh_key;
-  std::optional<FormFactors> factors;
-  std::string factors_key;
+  Keyed<MeshResult> mesh;
+  Keyed<FormFactors> factors;
   std::optional<PatchMaterials> materials;  ///< of the solution
-  std::optional<Solution> solution;
-  std::string solution_key;
-  std::optional<Elements> elements;  ///< light after the solution, of all patches
-  std::string elements_key;
-  std::optional<Gathered> gathered;  ///< by the gather method; needs no form factors
-  std::string gather_key;
-  std::optional<HeatSolution> heat;  ///< radiative exchange; needs form factors
-  std::string heat_key;
-  std::optional<LightBasis> basis;  ///< light of single lamps; needs form factors
-  std::string basis_key;
+  Keyed<Solution> solution;
+  Keyed<Elements> elements;  ///< light after the solution, of all patches
+  Keyed<Gathered> gathered;  ///< by the gather method
+  Keyed<HeatSolution> heat;  ///< radiative exchange
+  Keyed<LightBasis> basis;   ///< light of single lamps
 };
+
+/// A stage stands after the one that it is made from.
+enum class Stage { mesh, form_factors, solution, elements, gather, heat, basis };
+
+template <class T>
+struct StageOf {
+  Stage stage;
+  const char* group;  ///< in the file
+  const char* name;   ///< for people
+  Keyed<T> Results::*value;
+  std::optional<Stage> from = {};  ///< the stage that it is made from; none: the scene alone
+};
+
+/// What there is to know of every stage, in the order of Stage: files, the pipeline's rules of what
+/// is kept and discarded, and reports are loops over it.
+inline constexpr std::tuple kStages{
+    StageOf<MeshResult>{Stage::mesh, "mesh", "mesh", &Results::mesh},
+    StageOf<FormFactors>{Stage::form_factors, "form_factors", "form factors", &Results::factors,
+                         Stage::mesh},
+    StageOf<Solution>{Stage::solution, "solution", "solution", &Results::solution,
+                      Stage::form_factors},
+    StageOf<Elements>{Stage::elements, "elements", "elements", &Results::elements, Stage::solution},
+    StageOf<Gathered>{Stage::gather, "gather", "gathered light", &Results::gathered, Stage::mesh},
+    StageOf<HeatSolution>{Stage::heat, "heat", "heat exchange", &Results::heat,
+                          Stage::form_factors},
+    StageOf<LightBasis>{Stage::basis, "basis", "single lamps", &Results::basis,
+                        Stage::form_factors}};
+
+template <Stage stage>
+inline constexpr auto kStage = std::get<std::size_t(stage)>(kStages);
+
+/// Calls `visit` with the StageOf of each stage, in their order.
+template <class Visit>
+void forEachStage(const Visit& visit) {
+  std::apply([&](const auto&... stage) { (visit(stage), ...); }, kStages);
+}
 
 /// True for a file that starts with the HDF5 signature (whatever its name).
 bool isResultsFile(const std::string& path);
@@ -96,25 +138,15 @@ void writeResults(const std::string& path, const Results& results, Progress& pro
 void writeResults(const std::string& path, const Results& results, const FormFactors& factors,
                   Progress& progress);
 
-/// Stages of a file that agree with `Results`.
-struct StagesAsStored {
-  bool scene = false;
-  bool solution = false;  ///< with the materials
-  bool elements = false;
-  bool gathered = false;
-  bool heat = false;
-  bool basis = false;
-};
-
-/// Brings the results file at `path`, which must have the mesh and the form factors of `results`,
-/// up to date with `results` without writing again what it has: stages that differ are appended,
-/// and one write of its first page switches the file over to them. If killed at any moment, the
-/// file is unchanged or whole. The form factors may be without their matrix. Returns false, with
-/// the file unchanged, if another run extends it or has replaced its form factors, if another
-/// program's HDF5 wrote it, or if stages replaced in earlier runs take up half of it; then write it
-/// whole. Errors: RunError (disk full), as PatchMaterials::requireSizes(); the file is then
-/// unchanged, too.
-bool updateResults(const std::string& path, const Results& results, const StagesAsStored& stored);
+/// Brings the results file at `path` up to date with `results` without writing again what it has:
+/// stages whose keys differ are appended, and the scene unless `same_scene`; one write of its first
+/// page switches the file over to them. If killed at any moment, the file is unchanged or whole.
+/// The form factors may be without their matrix. Returns false, with the file unchanged, if it does
+/// not have the mesh and form factors of `results`, if another run extends it, if another program's
+/// HDF5 wrote it, or if stages replaced in earlier runs take up half of it; then write it whole.
+/// Errors: RunError (disk full), as PatchMaterials::requireSizes(); the file is then unchanged,
+/// too.
+bool updateResults(const std::string& path, const Results& results, bool same_scene);
 
 /// Bytes writeResults() will put on disk, within 4 kB.
 std::size_t estimateResultsBytes(const Results& results);

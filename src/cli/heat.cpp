@@ -30,7 +30,7 @@ ConditionText givenConditions(const Request& request) {
 /// The given conditions, or else those of the heat in the results file.
 HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   const Request& request = session.request;
-  const std::optional<HeatSolution>& stored = pipeline.stored().heat;
+  const Keyed<HeatSolution>& stored = pipeline.stored().heat;
   const bool kept = pipeline.fromResultsFile() && stored && !stored->conditions.empty();
   if (givesConditions(request) || !kept) {
     return readHeatConditions(pipeline.scene(), givenConditions(request));

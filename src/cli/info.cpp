@@ -40,13 +40,10 @@ void describeStages(Session& session, const Pipeline& pipeline) {
   Report& report = session.report;
   report.section("file", "Stages in the file");
   report.text("version", "written by", "radiosity " + stored.version);
-  if (stored.mesh) report.text("mesh_key", "mesh", stored.mesh_key);
-  if (stored.factors) report.text("factors_key", "form factors", stored.factors_key);
-  if (stored.solution) report.text("solution_key", "solution", stored.solution_key);
-  if (stored.elements) report.text("elements_key", "elements", stored.elements_key);
-  if (stored.gathered) report.text("gather_key", "gather", stored.gather_key);
-  if (stored.heat) report.text("heat_key", "heat exchange", stored.heat_key);
-  if (stored.basis) report.text("basis_key", "light of single lamps", stored.basis_key);
+  forEachStage([&](const auto& stage) {
+    const auto& found = stored.*stage.value;
+    if (found) report.text(stage.group + std::string("_key"), stage.name, found.key);
+  });
   if (!stored.mesh) return;
   summarizeMesh(report, *stored.mesh, Detail::brief);
   if (stored.factors) {

@@ -40,33 +40,6 @@ std::string cures(const FormFactorPlan& plan) {
   return text;
 }
 
-struct StageWords {
-  Command command;  ///< the subcommand of this stage
-  const char* key;
-  const char* label;
-  const char* kept;
-};
-
-StageWords wordsOf(Stage stage) {
-  switch (stage) {
-    case Stage::mesh:
-      return {Command::mesh, "mesh", "mesh", "it still fits"};
-    case Stage::form_factors:
-      return {Command::factors, "form_factors", "form factors", "they still fit"};
-    case Stage::solution:
-      return {Command::solve, "solution", "solution", "it still fits"};
-    case Stage::elements:
-      return {Command::render, "elements", "elements", "they still fit"};
-    case Stage::heat:
-      return {Command::heat, "heat", "heat exchange", "it still fits"};
-    case Stage::basis:
-      return {Command::solve, "basis", "single lamps", "it still fits"};
-    case Stage::gather:
-      return {Command::gather, "gather", "gather", "it still fits"};
-  }
-  throw std::logic_error("a stage without a word");
-}
-
 const char* wordOf(StageAction action) {
   switch (action) {
     case StageAction::reused:
@@ -190,10 +163,12 @@ void PipelineReport::rows(const Pipeline& /*pipeline*/, const std::string& text)
 }
 
 void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
-  const StageWords words = wordsOf(event.stage);
   const bool kept = event.action == StageAction::kept;
-  report_.stage(words.key, words.label, wordOf(event.action), kept ? words.kept : event.detail,
-                event.seconds.value_or(-1));
+  forEachStage([&](const auto& stage) {
+    if (stage.stage != event.stage) return;
+    report_.stage(stage.group, stage.name, wordOf(event.action),
+                  kept ? "still valid" : event.detail, event.seconds.value_or(-1));
+  });
   if (kept || event.action == StageAction::dropped) return;
   summarize(pipeline, event);
   if (event.stage != Stage::form_factors || event.action != StageAction::reused) return;
@@ -202,31 +177,36 @@ void PipelineReport::stage(const Pipeline& pipeline, const StageEvent& event) {
 }
 
 void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event) {
-  const bool own = request_.command == wordsOf(event.stage).command;
   const Results& results = pipeline.results();
   const PatchMesh& mesh = made(results.mesh).mesh;
   const PipelineOptions& options = pipeline.options();
+  const auto detail = [&](Command own) {
+    return request_.command == own ? Detail::full : Detail::brief;
+  };
   // A reused mesh or form factors need no report if they are only an intermediate step.
-  const Detail light = own ? Detail::full : Detail::brief;
-  const Detail step = !own && event.action == StageAction::reused ? Detail::none : light;
+  const auto stepDetail = [&](Command own) {
+    const bool reused = event.action == StageAction::reused;
+    return reused && request_.command != own ? Detail::none : detail(own);
+  };
   switch (event.stage) {
     case Stage::mesh:
-      return summarizeMesh(report_, made(results.mesh), step);
+      return summarizeMesh(report_, made(results.mesh), stepDetail(Command::mesh));
     case Stage::form_factors:
-      return summarizeFactors(report_, made(results.factors), mesh, step);
+      return summarizeFactors(report_, made(results.factors), mesh, stepDetail(Command::factors));
     case Stage::solution:
       return summarizeSolution(report_, made(results.solution), made(results.factors), mesh,
-                               options.solve, light);
+                               options.solve, detail(Command::solve));
     case Stage::gather:
-      return summarizeGathered(report_, made(results.gathered), mesh, options.gather, light);
+      return summarizeGathered(report_, made(results.gathered), mesh, options.gather,
+                               detail(Command::gather));
     case Stage::heat:
       return summarizeHeat(report_, made(results.heat), made(results.factors),
                            heatBySurface(made(results.heat), mesh, made(results.factors)),
-                           options.heat, light);
+                           options.heat, detail(Command::heat));
     case Stage::basis:
-      return summarizeBasis(report_, made(results.basis), light);
-    case Stage::elements:
-      return;  // outputs report them, since a picture may only have some elements
+      return summarizeBasis(report_, made(results.basis), detail(Command::solve));
+    default:
+      return;  // elements: outputs report them, since a picture may only have some
   }
 }
 

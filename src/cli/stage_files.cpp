@@ -115,13 +115,10 @@ OutputSet claimOutputs(const Session& session) {
 namespace {
 
 std::string contents(const Results& results) {
-  std::string list = "results: scene, mesh";
-  if (results.factors) list += ", form factors";
-  if (results.solution) list += ", solution";
-  if (results.elements) list += ", elements";
-  if (results.gathered) list += ", gathered light";
-  if (results.heat) list += ", heat exchange";
-  if (results.basis) list += ", light of single lamps";
+  std::string list = "results: scene";
+  forEachStage([&](const auto& stage) {
+    if (results.*stage.value) list += std::string(", ") + stage.name;
+  });
   return list;
 }
 

@@ -91,7 +91,7 @@ void Pipeline::discardKeptRows() {
   // An earlier run may have ended after it wrote the results and before it removed its journals.
   const std::string& path = options_.journal.path;
   if (path.empty() || !results_.factors) return;
-  const std::string key = journalKey(StageKey(results_.factors_key),
+  const std::string key = journalKey(StageKey(results_.factors.key),
                                      nameOf(kFactorsFromNames, results_.factors->method));
   if (JournalFile::keyIn(path) != key) return;
   removeJournalsBeside(path, key);

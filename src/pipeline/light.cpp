@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/luminance.h"
-#include "base/made.h"
-#include "pipeline/stage_key.h"
-#include "radiosity/pipeline.h"
+#include "pipeline/stages/get_or_make.h"
 
 namespace radiosity {
 
@@ -49,8 +47,7 @@ SurfaceLight Pipeline::elementLight(std::span<const std::uint8_t> wanted) {
   SurfaceLight light = solvedLight();
   const PatchMaterials& materials = materialsOfMesh();
   const StageKey key = elementsKeyNow();
-  const bool there = (results_.elements && results_.elements_key == key.text()) ||
-                     (stored_.elements && stored_.elements_key == key.text());
+  const bool there = isMadeBy(key, results_.elements) || isMadeBy(key, stored_.elements);
   light.elements = std::make_shared<const Elements>(
       wanted.empty() || there ? elements() : elementsOf(wanted, key));
   light.reflectance = materials.reflectance;

@@ -21,6 +21,7 @@
 #include "pipeline/journal_file.h"
 #include "pipeline/shared_journal.h"
 #include "pipeline/stage_key.h"
+#include "pipeline/stages/get_or_make.h"
 #include "radiosity/version.h"
 #include "results/matrix_blocks.h"
 #include "scene/text.h"
@@ -90,20 +91,7 @@ void Pipeline::openSource(const std::string& path) {
   source_state_ = fileState(path);
   stored_ = readResults(path, false);
   source_ = path;
-  on_disk_ = onDisk(path, stored_, false);
-}
-
-Pipeline::OnDisk Pipeline::onDisk(const std::string& path, const Results& results, bool scene) {
-  return {path,
-          fileState(path),
-          scene,
-          results.mesh ? results.mesh_key : "",
-          results.factors ? results.factors_key : "",
-          results.solution ? results.solution_key : "",
-          results.elements ? results.elements_key : "",
-          results.gathered ? results.gather_key : "",
-          results.heat ? results.heat_key : "",
-          results.basis ? results.basis_key : ""};
+  on_disk_ = {path, source_state_, false};
 }
 
 void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
@@ -118,13 +106,13 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
   }
   results_.scene = std::exchange(stored_.scene, std::nullopt);
   from_results_ = true;
-  on_disk_.scene = true;
-  options_ = {meshOptionsOf(StageKey(stored_.mesh_key)),
-              factorOptionsOf(StageKey(stored_.factors_key)),
-              solveOptionsOf(StageKey(stored_.solution_key)),
-              gatherOptionsOf(StageKey(stored_.gather_key)),
-              elementOptionsOf(StageKey(stored_.elements_key)),
-              heatOptionsOf(StageKey(stored_.heat_key)),
+  on_disk_.same_scene = true;
+  options_ = {meshOptionsOf(StageKey(stored_.mesh.key)),
+              factorOptionsOf(StageKey(stored_.factors.key)),
+              solveOptionsOf(StageKey(stored_.solution.key)),
+              gatherOptionsOf(StageKey(stored_.gathered.key)),
+              elementOptionsOf(StageKey(stored_.elements.key)),
+              heatOptionsOf(StageKey(stored_.heat.key)),
               {},
               options_.journal,
               {}};
@@ -143,7 +131,7 @@ void Pipeline::overrideScene(const SceneOptions& overrides) {
   const std::size_t known = notes.size();
   applyOverrides(made(results_.scene), overrides);
   overridden_ = true;
-  on_disk_.scene = false;
+  on_disk_.same_scene = false;
   changed_ = true;
   observer_.notes(*this, std::span(notes).subspan(std::min(known, notes.size())));
 }
@@ -258,130 +246,47 @@ void Pipeline::loadMatrix() {
     shareStoredMatrix();
     return;
   }
-  std::optional<FormFactors> factors =
-      std::move(readResults(source_, true, memoryOfStoredMatrix()).factors);
+  Keyed<FormFactors> factors = readResults(source_, true, memoryOfStoredMatrix()).factors;
   // Another run may have replaced the file since: its matrix belongs to another mesh.
   if (!factors || fileState(source_) != source_state_) {
     throw RunError(source_ + ": was replaced by another run meanwhile; run this one again");
   }
-  results_.factors = std::move(factors);
+  results_.factors.value = std::move(factors.value);
   progress_.check();
-}
-
-/// Keeps a stage of the results file that nobody asked for if it still `fits`; otherwise drops it
-/// and tells the observer why. True if the stage is dropped.
-template <class T>
-bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
-                    bool fits, const std::string& why_not) {
-  std::optional<T> found = std::exchange(stored_.*value, std::nullopt);
-  if (!fits) {
-    tell(stage, StageAction::dropped, why_not);
-    return true;
-  }
-  results_.*value = std::move(found);
-  results_.*value_key = stored_.*value_key;
-  tell(stage, StageAction::kept);
-  return false;
-}
-
-/// The same; the stage fits if it was made by `key` and the stages that it depends on are `there`.
-template <class T>
-bool Pipeline::keep(Stage stage, std::optional<T> Results::*value, std::string Results::*value_key,
-                    const StageKey& key, bool there) {
-  const std::string& stored_key = stored_.*value_key;
-  return keep(stage, value, value_key, there && key.text() == stored_key, why(stored_key, key));
-}
-
-bool Pipeline::keepFactors() {
-  if (results_.factors || !stored_.factors) return false;
-  const StageKey key =
-      factorsKey(factorOptionsOf(StageKey(stored_.factors_key)), made(results_.mesh).mesh);
-  return keep(Stage::form_factors, &Results::factors, &Results::factors_key, key);
-}
-
-bool Pipeline::keepSolution() {
-  if (results_.solution || !stored_.solution) return false;
-  const StageKey key = solutionKey(solveOptionsOf(StageKey(stored_.solution_key)),
-                                   materialsOfMesh(), usedFactorsKey());
-  return keep(Stage::solution, &Results::solution, &Results::solution_key, key,
-              results_.factors.has_value());
-}
-
-bool Pipeline::keepElements() {
-  if (results_.elements || !stored_.elements) return false;
-  const StageKey key =
-      elementsKey(elementOptionsOf(StageKey(stored_.elements_key)), results_.solution_key);
-  return keep(Stage::elements, &Results::elements, &Results::elements_key, key,
-              results_.solution.has_value());
-}
-
-bool Pipeline::keepGathered() {
-  if (results_.gathered || !stored_.gathered) return false;
-  const StageKey key = gatherKey(gatherOptionsOf(StageKey(stored_.gather_key)), materialsOfMesh(),
-                                 made(results_.mesh).mesh);
-  return keep(Stage::gather, &Results::gathered, &Results::gather_key, key);
-}
-
-bool Pipeline::keepHeat() {
-  if (results_.heat || !stored_.heat) return false;
-  const bool fits = results_.factors && isHeatOf(StageKey(stored_.heat_key), usedFactorsKey());
-  return keep(Stage::heat, &Results::heat, &Results::heat_key, fits, "form factors changed");
-}
-
-bool Pipeline::keepBasis() {
-  if (results_.basis || !stored_.basis) return false;
-  const bool fits = results_.factors &&
-                    isBasisOf(StageKey(stored_.basis_key), materialsOfMesh(), usedFactorsKey());
-  return keep(Stage::basis, &Results::basis, &Results::basis_key, fits,
-              "form factors or reflectance changed");
 }
 
 void Pipeline::dropEmptySolution() {
   if (!results_.solution || !results_.solution->radiosity.empty()) return;
-  results_.solution.reset();
-  results_.solution_key.clear();
+  results_.solution = {};
 }
 
 void Pipeline::keepLaterStages() {
   if (!results_.mesh) mesh();
   dropEmptySolution();
-  // The order matters: a solution depends on its form factors, elements on their solution.
-  bool dropped = keepFactors();
-  dropped = keepSolution() || dropped;
-  dropped = keepElements() || dropped;
-  dropped = keepGathered() || dropped;
-  dropped = keepHeat() || dropped;
-  dropped = keepBasis() || dropped;
+  // What a stage is made from comes before it.
+  forEachStage([this](const auto& stage) {
+    auto& stored = stored_.*stage.value;
+    if (results_.*stage.value || !stored) return;
+    const std::string changed = changedInputs(StageKey(stored.key));
+    if (changed.empty()) {
+      takeStored(stage, StageAction::kept);
+      return;
+    }
+    stored.value.reset();
+    changed_ = true;
+    tell(stage.stage, StageAction::dropped, changed);
+  });
   const bool needed = results_.solution || results_.gathered || hasOwnMaterials();
   if (!needed) results_.materials.reset();
-  changed_ = changed_ || dropped;
 }
 
 bool Pipeline::update(const std::string& path) {
   keepLaterStages();
-  const bool same = path == on_disk_.path && fileState(path) == on_disk_.state &&
-                    results_.factors && results_.mesh_key == on_disk_.mesh_key &&
-                    results_.factors_key == on_disk_.factors_key;
-  if (!same) return false;
-  const auto stored = [](bool there, const std::string& key, const std::string& on_disk) {
-    return there ? key == on_disk : on_disk.empty();
-  };
-  // The results may have materials without a solution.
-  const bool solution = results_.solution && results_.solution_key == on_disk_.solution_key;
-  const StagesAsStored as_stored = {
-      on_disk_.scene,
-      solution,
-      stored(results_.elements.has_value(), results_.elements_key, on_disk_.elements_key),
-      stored(results_.gathered.has_value(), results_.gather_key, on_disk_.gather_key),
-      stored(results_.heat.has_value(), results_.heat_key, on_disk_.heat_key),
-      stored(results_.basis.has_value(), results_.basis_key, on_disk_.basis_key)};
-  if (!updateResults(path, results_, as_stored)) return false;
-  on_disk_ = onDisk(path, results_, true);
+  if (path != on_disk_.path || fileState(path) != on_disk_.state) return false;
+  if (!updateResults(path, results_, on_disk_.same_scene)) return false;
+  wrote(path);
   // The file still has the form factors that we read from it.
   if (path == source_) source_state_ = on_disk_.state;
-  discardKeptRows();
-  saved_ = path;
-  changed_ = false;
   return true;
 }
 
@@ -389,7 +294,11 @@ void Pipeline::save(const std::string& path) {
   if (update(path)) return;
   loadMatrix();
   writeResults(path, results_, progress_);
-  on_disk_ = onDisk(path, results_, true);
+  wrote(path);
+}
+
+void Pipeline::wrote(const std::string& path) {
+  on_disk_ = {path, fileState(path), true};
   discardKeptRows();
   saved_ = path;
   changed_ = false;
@@ -400,18 +309,10 @@ void Pipeline::checkpoint(const std::string& path) {
   loadMatrix();
   // Gathered light on the same mesh stays in the file: its key says whether it still fits.
   const bool lend = mesh_reused_ && stored_.gathered && !results_.gathered;
-  if (lend) {
-    results_.gathered = std::exchange(stored_.gathered, std::nullopt);
-    results_.gather_key = stored_.gather_key;
-  }
+  if (lend) std::swap(results_.gathered, stored_.gathered);
   writeResults(path, results_, progress_);
-  on_disk_ = onDisk(path, results_, true);
-  discardKeptRows();
-  if (lend) {
-    stored_.gathered = std::exchange(results_.gathered, std::nullopt);
-    results_.gather_key.clear();
-  }
-  saved_ = path;
+  if (lend) std::swap(results_.gathered, stored_.gathered);
+  wrote(path);
   changed_ = lend;
 }
 

@@ -37,24 +37,6 @@ void read(const StageKey& key, std::string_view name, Number& value) {
   }
 }
 
-/// Hashes each array as rows of all bands.
-std::string materialsHash(const PatchMaterials& materials) {
-  Hash hash;
-  for (const std::vector<double>* values : {&materials.reflectance, &materials.emission}) {
-    const std::uint64_t rows = values->size() / std::size_t(materials.bands);
-    hash.bytes(&rows, sizeof rows);
-    hash.bytes(values->data(), values->size() * sizeof(double));
-  }
-  return hash.hex();
-}
-
-std::string reflectanceHash(const PatchMaterials& materials) {
-  Hash hash;
-  hash.array(materials.reflectance);
-  hash.text(fmt::format("{}", materials.bands));
-  return hash.hex();
-}
-
 std::string sourcesHash(std::span<const LightSource> sources) {
   Hash hash;
   for (const LightSource& source : sources) {
@@ -63,13 +45,6 @@ std::string sourcesHash(std::span<const LightSource> sources) {
     hash.array(source.sky);
   }
   return hash.hex();
-}
-
-/// One number if all bands have the same.
-std::string skyText(const std::vector<double>& sky) {
-  if (sky.empty()) return "0";
-  const bool grey = std::all_of(sky.begin(), sky.end(), [&](double s) { return s == sky[0]; });
-  return grey ? fmt::format("{}", sky[0]) : fmt::format("{}", fmt::join(sky, ","));
 }
 
 /// Reads an option from a key; leaves `value` as it is if the key does not name it.
@@ -95,12 +70,6 @@ void addEye(StageKey& key, EyeChoice eye) {
   if (eye != EyeChoice::cpu) key.add("eye", nameOf(kEyeNames, eye));
 }
 
-std::string factorsHash(const StageKey& factors_key) {
-  Hash hash;
-  hash.text(factors_key.text());
-  return hash.hex();
-}
-
 std::string sceneHash(const Scene& scene) {
   Hash hash;
   hash.array(scene.vertices);
@@ -117,6 +86,37 @@ std::string sceneHash(const Scene& scene) {
 }
 
 }  // namespace
+
+/// Hashes each array as rows of all bands.
+std::string materialsHash(const PatchMaterials& materials) {
+  Hash hash;
+  for (const std::vector<double>* values : {&materials.reflectance, &materials.emission}) {
+    const std::uint64_t rows = values->size() / std::size_t(materials.bands);
+    hash.bytes(&rows, sizeof rows);
+    hash.bytes(values->data(), values->size() * sizeof(double));
+  }
+  return hash.hex();
+}
+
+std::string reflectanceHash(const PatchMaterials& materials) {
+  Hash hash;
+  hash.array(materials.reflectance);
+  hash.text(fmt::format("{}", materials.bands));
+  return hash.hex();
+}
+
+/// One number if all bands have the same.
+std::string skyText(const std::vector<double>& sky) {
+  if (sky.empty()) return "0";
+  const bool grey = std::all_of(sky.begin(), sky.end(), [&](double s) { return s == sky[0]; });
+  return grey ? fmt::format("{}", sky[0]) : fmt::format("{}", fmt::join(sky, ","));
+}
+
+std::string keyHash(const std::string& key) {
+  Hash hash;
+  hash.text(key);
+  return hash.hex();
+}
 
 StageKey::StageKey(std::string_view text) {
   while (!text.empty()) {
@@ -224,7 +224,7 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
   key.add("max-iterations", fmt::format("{}", options.max_iterations));
   key.add("materials", materialsHash(materials));
   key.add("sky", skyText(materials.sky));
-  key.add("factors", factorsHash(factors_key));
+  key.add("factors", keyHash(factors_key.text()));
   return key;
 }
 
@@ -236,19 +236,11 @@ StageKey basisKey(const SolveOptions& options, const PatchMaterials& materials,
   key.add("max-iterations", fmt::format("{}", options.max_iterations));
   key.add("reflectance", reflectanceHash(materials));
   key.add("sources", sourcesHash(sources));
-  key.add("factors", factorsHash(factors_key));
+  key.add("factors", keyHash(factors_key.text()));
   return key;
 }
 
-bool isBasisOf(const StageKey& basis_key, const PatchMaterials& materials,
-               const StageKey& factors_key) {
-  return basis_key.get("reflectance") == reflectanceHash(materials) &&
-         basis_key.get("factors") == factorsHash(factors_key);
-}
-
 StageKey elementsKey(const ElementOptions& options, const std::string& solution_key) {
-  Hash solution;
-  solution.text(solution_key);
   StageKey key;
   key.add("element-tolerance", fmt::format("{}", options.tolerance));
   key.add("smallest-edge", fmt::format("{}", options.smallest_edge));
@@ -257,7 +249,7 @@ StageKey elementsKey(const ElementOptions& options, const std::string& solution_
   key.add("most-rays", fmt::format("{}", options.most_rays));
   key.add("crease", fmt::format("{}", options.crease));
   key.add("seed", fmt::format("{}", options.seed));
-  key.add("solution", solution.hex());
+  key.add("solution", keyHash(solution_key));
   return key;
 }
 
@@ -327,12 +319,8 @@ StageKey heatKey(const HeatOptions& options, const HeatConditions& conditions,
   key.add("heat-iterations", fmt::format("{}", options.max_iterations));
   if (options.sigma != kStefanBoltzmann) key.add("sigma", fmt::format("{}", options.sigma));
   key.add("conditions", conditionsHash(conditions));
-  key.add("factors", factorsHash(factors_key));
+  key.add("factors", keyHash(factors_key.text()));
   return key;
-}
-
-bool isHeatOf(const StageKey& heat_key, const StageKey& factors_key) {
-  return heat_key.get("factors") == factorsHash(factors_key);
 }
 
 MeshOptions meshOptionsOf(const StageKey& key) {

@@ -28,6 +28,7 @@ class StageKey {
   explicit StageKey(std::string_view text);
   void add(std::string name, std::string value);
   std::optional<std::string> get(std::string_view name) const;
+  const std::vector<std::pair<std::string, std::string>>& pairs() const { return pairs_; }
   std::string text() const;
   /// The changes in words: "resolution 256 -> 512, form factors changed". Empty if nothing changed.
   static std::string difference(const StageKey& before, const StageKey& after);
@@ -55,15 +56,17 @@ StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials
 
 StageKey heatKey(const HeatOptions& options, const HeatConditions& conditions,
                  const StageKey& factors_key);
-/// Whether the heat exchange with that key was made from these form factors.
-bool isHeatOf(const StageKey& heat_key, const StageKey& factors_key);
 
 /// Of `materials` only the reflectance is in the key; `sources` have the emission.
 StageKey basisKey(const SolveOptions& options, const PatchMaterials& materials,
                   std::span<const LightSource> sources, const StageKey& factors_key);
-/// Whether the light with that key was made from these form factors and this reflectance.
-bool isBasisOf(const StageKey& basis_key, const PatchMaterials& materials,
-               const StageKey& factors_key);
+
+/// What keys say of the inputs of stages: "materials", "reflectance", "sky"; of a key that
+/// usedKey() returned, "factors"; of that of a solution, "solution".
+std::string materialsHash(const PatchMaterials& materials);
+std::string reflectanceHash(const PatchMaterials& materials);
+std::string skyText(const std::vector<double>& sky);
+std::string keyHash(const std::string& key);
 
 /// The options in a key; defaults for those that it does not have.
 MeshOptions meshOptionsOf(const StageKey& key);

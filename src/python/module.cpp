@@ -28,14 +28,14 @@ py::dict read(const std::string& path) {
     *file = readResults(path);
     if (file->scene) mesh->scene = std::make_shared<const Scene>(std::move(*file->scene));
     if (file->mesh) mesh->result = std::move(*file->mesh);
-    mesh->key = kept(file->mesh_key);
+    mesh->key = kept(file->mesh.key);
     if (mesh->scene && file->mesh) {
       mesh->materials = patchMaterials(*mesh->scene, mesh->result.mesh);
     }
     if (file->factors) factors->factors = std::move(*file->factors);
   });
   Results& results = *file;
-  factors->key = kept(results.factors_key);
+  factors->key = kept(results.factors.key);
   factors->mesh = mesh;
   py::dict dict;
   if (mesh->scene) dict["scene"] = std::const_pointer_cast<Scene>(mesh->scene);
@@ -45,13 +45,13 @@ py::dict read(const std::string& path) {
     light->factors = factors;
     light->materials = std::make_shared<const PatchMaterials>(std::move(*results.materials));
     light->solution = std::move(*results.solution);
-    light->key = kept(results.solution_key);
+    light->key = kept(results.solution.key);
     dict["solution"] = light;
   }
   if (results.heat && results.factors) {
     heat->factors = factors;
     heat->solution = std::move(*results.heat);
-    heat->key = kept(results.heat_key);
+    heat->key = kept(results.heat.key);
     dict["heat"] = heat;
   }
   return dict;
@@ -66,18 +66,13 @@ void save(const std::string& path, const FactorsHandle& factors, const SolutionH
     Results results;
     results.version = RADIOSITY_VERSION;
     if (mesh.scene) results.scene = *mesh.scene;
-    results.mesh = mesh.result;
-    results.mesh_key = mesh.key();
-    results.factors_key = factors.key();
+    results.mesh = {mesh.result, mesh.key()};
+    results.factors.key = factors.key();
     if (light != nullptr) {
       results.materials = *light->materials;
-      results.solution = light->solution;
-      results.solution_key = light->key();
+      results.solution = {light->solution, light->key()};
     }
-    if (heat != nullptr) {
-      results.heat = heat->solution;
-      results.heat_key = heat->key();
-    }
+    if (heat != nullptr) results.heat = {heat->solution, heat->key()};
     writeResults(path, results, factors.factors, progress);
   });
 }

@@ -138,6 +138,12 @@ void describe(Archive& a, Described<Archive, MeshReport>& r) {
 }
 
 template <class Archive>
+void describe(Archive& a, Described<Archive, MeshResult>& m) {
+  describe(a, m.mesh);
+  a.group("report", [&](auto& report) { describe(report, m.report); });
+}
+
+template <class Archive>
 void describe(Archive& a, Described<Archive, ClosureReport>& r) {
   a("largest_residual_before", r.largest_residual_before);
   a("rms_residual_before", r.rms_residual_before);

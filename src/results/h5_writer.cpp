@@ -317,6 +317,9 @@ void SizeCounter::strings(const std::string& name, const std::vector<std::string
   raw(name, {Number::u8, values.size(), columnWidth(values)}, "");
 }
 
-void SizeCounter::link(const std::string& name) { *bytes_ += 20 + name.size(); }
+void SizeCounter::link(const std::string& name, const SizeCounter& /*target*/,
+                       const std::string& /*target_name*/) {
+  *bytes_ += 20 + name.size();
+}
 
 }  // namespace radiosity::h5

@@ -99,7 +99,7 @@ class SizeCounter {
   void dataset(const std::string& name, const Shape& shape, const void* data,
                const std::string& unit);
   void strings(const std::string& name, const std::vector<std::string>& values);
-  void link(const std::string& name);
+  void link(const std::string& name, const SizeCounter& target, const std::string& target_name);
 
  private:
   void raw(const std::string& name, const Shape& shape, const std::string& unit);

@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <new>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
-#include "base/made.h"
 #include "mesh/clusters/cluster_patches.h"
 #include "radiosity/results.h"
 #include "results/fields.h"
@@ -34,93 +35,6 @@ constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
 constexpr std::int32_t kFormatVersion = 7;
 
-/// Writes everything but the matrix and the links into a group or a counter. `suffix`: appended to
-/// the names of groups.
-template <class Sink>
-class StageWriter {
- public:
-  StageWriter(Sink& root, const Results& results, std::string suffix = {})
-      : root_(root), results_(results), suffix_(std::move(suffix)) {
-    if (results.mesh) geometry_hash_ = geometryHash(results.mesh->mesh);
-  }
-
-  void head() {
-    root_.text("format", kFormat);
-    root_.attribute("format_version", h5::Number::i32, 1, &kFormatVersion);
-    root_.text("version", results_.version);
-  }
-  void scene(const Scene& scene) {
-    Sink group = root_.group("scene" + suffix_);
-    FieldWriter<Sink> fields(group);
-    describe(fields, scene);
-  }
-  Sink mesh(const MeshResult& mesh) {
-    Sink group = root_.group("mesh");
-    group.text("key", results_.mesh_key);
-    group.text("geometry_hash", geometry_hash_);
-    FieldWriter<Sink> fields(group);
-    describe(fields, mesh.mesh);
-    fields.group("report", [&](auto& report) { describe(report, mesh.report); });
-    return group;
-  }
-  Sink factors(const FormFactors& factors) {
-    Sink group = root_.group("form_factors");
-    group.text("key", results_.factors_key);
-    group.text("geometry_hash", geometry_hash_);
-    const bool shared = results_.mesh && results_.mesh->mesh.clusters;
-    group.text("entry", shared
-                            ? "F[i,j]: the fraction of what leaves cluster i that reaches "
-                              "cluster j; /mesh/clusters/of_patch names each patch's"
-                            : "F[i,j]: the fraction of what leaves patch i that reaches patch j");
-    FieldWriter<Sink> fields(group);
-    describe(fields, factors);
-    return group;
-  }
-  void solution() {
-    if (!results_.solution && !results_.materials) return;
-    Sink group = root_.group("solution" + suffix_);
-    FieldWriter<Sink> fields(group);
-    if (results_.materials) describe(fields, *results_.materials);
-    if (!results_.solution) return;
-    group.text("key", results_.solution_key);
-    describe(fields, *results_.solution);
-  }
-  void elements() {
-    if (!results_.elements) return;
-    Sink group = root_.group("elements" + suffix_);
-    group.text("key", results_.elements_key);
-    FieldWriter<Sink> fields(group);
-    describe(fields, *results_.elements);
-  }
-  void gathered() {
-    if (!results_.gathered) return;
-    Sink group = root_.group("gather" + suffix_);
-    group.text("key", results_.gather_key);
-    FieldWriter<Sink> fields(group);
-    describe(fields, *results_.gathered);
-  }
-  void heat() {
-    if (!results_.heat) return;
-    Sink group = root_.group("heat" + suffix_);
-    group.text("key", results_.heat_key);
-    FieldWriter<Sink> fields(group);
-    describe(fields, *results_.heat);
-  }
-  void basis() {
-    if (!results_.basis) return;
-    Sink group = root_.group("basis" + suffix_);
-    group.text("key", results_.basis_key);
-    FieldWriter<Sink> fields(group);
-    describe(fields, *results_.basis);
-  }
-
- private:
-  Sink& root_;
-  const Results& results_;
-  std::string suffix_;
-  std::string geometry_hash_;  ///< empty without a mesh
-};
-
 /// The arrays of the mesh to which /form_factors links, so that a reader needs no other group:
 /// those of the rows, which are patches or clusters.
 using MeshLinks = std::span<const std::array<const char*, 2>>;
@@ -137,6 +51,89 @@ MeshLinks meshLinks(const Results& results) {
   if (results.mesh->mesh.clusters) return kClusterLinks;
   return kPatchLinks;
 }
+
+/// Writes into a group or a counter. `suffix`: appended to the names of groups.
+template <class Sink>
+class StageWriter {
+ public:
+  using PutMatrix = std::function<void(Sink&, const ExchangeMatrix&)>;
+
+  StageWriter(Sink& root, const Results& results, std::string suffix = {})
+      : root_(root), results_(results), suffix_(std::move(suffix)) {
+    if (results.mesh) geometry_hash_ = geometryHash(results.mesh->mesh);
+  }
+
+  /// Writes the whole file. `factors`: the form factors in it; null: none.
+  void all(const FormFactors* factors, const PutMatrix& put_matrix) {
+    root_.text("format", kFormat);
+    root_.attribute("format_version", h5::Number::i32, 1, &kFormatVersion);
+    root_.text("version", results_.version);
+    scene();
+    factors_ = factors;
+    put_matrix_ = put_matrix;
+    forEachStage([this](const auto& stage) { write(stage); });
+  }
+  void scene() {
+    if (!results_.scene) return;
+    Sink group = root_.group("scene" + suffix_);
+    FieldWriter<Sink> fields(group);
+    describe(fields, *results_.scene);
+  }
+  /// Writes the stage if it is there.
+  template <class T>
+  void write(const StageOf<T>& stage) {
+    if (results_.*stage.value) put(stage, *(results_.*stage.value));
+  }
+  void write(const StageOf<FormFactors>& stage) {
+    if (factors_ == nullptr) return;
+    Sink group = put(stage, *factors_);
+    for (const auto& [name, source] : meshLinks(results_)) {
+      group.link(name, root_, kStage<Stage::mesh>.group + ("/" + std::string(source)));
+    }
+    put_matrix_(group, factors_->matrix);
+  }
+  /// With the materials, which may be there without a solution.
+  void write(const StageOf<Solution>& stage) {
+    if (!results_.solution && !results_.materials) return;
+    Sink group = root_.group(stage.group + suffix_);
+    FieldWriter<Sink> fields(group);
+    if (results_.materials) describe(fields, *results_.materials);
+    if (!results_.solution) return;
+    group.text("key", results_.solution.key);
+    describe(fields, *results_.solution);
+  }
+
+ private:
+  template <class T>
+  Sink put(const StageOf<T>& stage, const T& value) {
+    Sink group = root_.group(stage.group + suffix_);
+    group.text("key", (results_.*stage.value).key);
+    putIdentity(group, value);
+    FieldWriter<Sink> fields(group);
+    describe(fields, value);
+    return group;
+  }
+  template <class T>
+  void putIdentity(Sink& /*group*/, const T& /*value*/) {}
+  void putIdentity(Sink& group, const MeshResult& /*mesh*/) {
+    group.text("geometry_hash", geometry_hash_);
+  }
+  void putIdentity(Sink& group, const FormFactors& /*factors*/) {
+    group.text("geometry_hash", geometry_hash_);
+    const bool shared = results_.mesh && results_.mesh->mesh.clusters;
+    group.text("entry", shared
+                            ? "F[i,j]: the fraction of what leaves cluster i that reaches "
+                              "cluster j; /mesh/clusters/of_patch names each patch's"
+                            : "F[i,j]: the fraction of what leaves patch i that reaches patch j");
+  }
+
+  Sink& root_;
+  const Results& results_;
+  std::string suffix_;
+  std::string geometry_hash_;  ///< empty without a mesh
+  const FormFactors* factors_ = nullptr;
+  PutMatrix put_matrix_;
+};
 
 void requireMatrix(const std::string& path, const FormFactors* factors) {
   if (factors != nullptr && factors->matrix.size() != factors->fronts.size()) {
@@ -173,20 +170,6 @@ void checkHead(const h5::InputFile& file, const InputGroup& root) {
   file.requireOwnObjects();
 }
 
-FormFactors readFactors(const InputGroup& group, bool with_matrix,
-                        std::shared_ptr<ScratchMemory> scratch) {
-  FormFactors factors;
-  FieldReader fields(group);
-  describe(fields, factors);
-  if (!with_matrix) return factors;
-  factors.matrix = readMatrix(group, std::move(scratch));
-  if (factors.matrix.size() != factors.fronts.size()) {
-    group.fail("area", fmt::format("has {} patches, fronts has {}", factors.matrix.size(),
-                                   factors.fronts.size()));
-  }
-  return factors;
-}
-
 std::optional<Scene> readScene(const InputGroup& root) {
   std::optional<Scene> scene;
   if (root.has("scene")) {
@@ -197,63 +180,60 @@ std::optional<Scene> readScene(const InputGroup& root) {
   return scene;
 }
 
-/// Returns the hash of the mesh that the file names; empty without a mesh.
-std::string readStages(const InputGroup& root, bool with_factors,
-                       std::shared_ptr<ScratchMemory> scratch, Results& results) {
-  results.version = root.text("version");
-  results.scene = readScene(root);
-  std::string mesh_hash;
-  if (root.has("mesh")) {
-    const InputGroup group = root.group("mesh");
-    results.mesh_key = group.text("key");
-    mesh_hash = group.text("geometry_hash");
-    FieldReader fields(group);
-    describe(fields, results.mesh.emplace().mesh);
-    fields.group("report", [&](auto& report) { describe(report, results.mesh->report); });
+class StageReader {
+ public:
+  /// `scratch`: as in readResults().
+  StageReader(const InputGroup& root, bool with_factors, std::shared_ptr<ScratchMemory> scratch)
+      : root_(root), with_factors_(with_factors), scratch_(std::move(scratch)) {}
+
+  Results all() {
+    results_.version = root_.text("version");
+    results_.scene = readScene(root_);
+    forEachStage([this](const auto& stage) {
+      if (root_.has(stage.group)) read(root_.group(stage.group), results_.*stage.value);
+    });
+    return std::move(results_);
   }
-  if (root.has("form_factors")) {
-    const InputGroup group = root.group("form_factors");
-    results.factors_key = group.text("key");
-    if (results.mesh && group.text("geometry_hash") != mesh_hash) {
+  /// That the file names of its mesh; empty without a mesh.
+  const std::string& geometryHash() const { return geometry_hash_; }
+
+ private:
+  template <class T>
+  void read(const InputGroup& group, Keyed<T>& stage) {
+    stage.key = group.text("key");
+    FieldReader fields(group);
+    describe(fields, stage.value.emplace());
+    readMore(group, *stage);
+  }
+  void read(const InputGroup& group, Keyed<Solution>& solution) {
+    FieldReader fields(group);
+    if (group.has("reflectance")) describe(fields, results_.materials.emplace());
+    if (!group.has("radiosity")) return;
+    solution.key = group.text("key");
+    describe(fields, solution.value.emplace());
+  }
+  template <class T>
+  void readMore(const InputGroup& /*group*/, const T& /*value*/) {}
+  void readMore(const InputGroup& group, const MeshResult& /*mesh*/) {
+    geometry_hash_ = group.text("geometry_hash");
+  }
+  void readMore(const InputGroup& group, FormFactors& factors) {
+    if (results_.mesh && group.text("geometry_hash") != geometry_hash_) {
       group.fail("geometry_hash", "is not that of /mesh: these form factors are of another mesh");
     }
-    results.factors = readFactors(group, with_factors, std::move(scratch));
+    if (!with_factors_) return;
+    factors.matrix = readMatrix(group, std::move(scratch_));
+    if (factors.matrix.size() == factors.fronts.size()) return;
+    group.fail("area", fmt::format("has {} patches, fronts has {}", factors.matrix.size(),
+                                   factors.fronts.size()));
   }
-  if (root.has("solution")) {
-    const InputGroup group = root.group("solution");
-    FieldReader fields(group);
-    if (group.has("reflectance")) describe(fields, results.materials.emplace());
-    if (group.has("radiosity")) {
-      results.solution_key = group.text("key");
-      describe(fields, results.solution.emplace());
-    }
-  }
-  if (root.has("elements")) {
-    const InputGroup group = root.group("elements");
-    results.elements_key = group.text("key");
-    FieldReader fields(group);
-    describe(fields, results.elements.emplace());
-  }
-  if (root.has("gather")) {
-    const InputGroup group = root.group("gather");
-    results.gather_key = group.text("key");
-    FieldReader fields(group);
-    describe(fields, results.gathered.emplace());
-  }
-  if (root.has("heat")) {
-    const InputGroup group = root.group("heat");
-    results.heat_key = group.text("key");
-    FieldReader fields(group);
-    describe(fields, results.heat.emplace());
-  }
-  if (root.has("basis")) {
-    const InputGroup group = root.group("basis");
-    results.basis_key = group.text("key");
-    FieldReader fields(group);
-    describe(fields, results.basis.emplace());
-  }
-  return mesh_hash;
-}
+
+  const InputGroup& root_;
+  bool with_factors_;
+  std::shared_ptr<ScratchMemory> scratch_;
+  Results results_;
+  std::string geometry_hash_;
+};
 
 std::optional<Scene> sceneAtOnce(const std::string& path) {
   const h5::InputFile file(path);
@@ -267,15 +247,15 @@ Results readAtOnce(const std::string& path, bool with_factors,
   const h5::InputFile file(path);
   const InputGroup root(file);
   checkHead(file, root);
+  StageReader stages(root, with_factors, std::move(scratch));
   Results results;
-  std::string mesh_hash;
   try {
-    mesh_hash = readStages(root, with_factors, std::move(scratch), results);
+    results = stages.all();
   } catch (const std::bad_alloc&) {
     throw RunError(fmt::format("{}: does not fit into memory; use a larger machine", path));
   }
   checkResults(path, results);
-  if (results.mesh && geometryHash(results.mesh->mesh) != mesh_hash) {
+  if (results.mesh && geometryHash(results.mesh->mesh) != stages.geometryHash()) {
     file.fail("/mesh/geometry_hash", "is not that of /mesh: another program changed the patches");
   }
   if (results.mesh && results.mesh->mesh.clusters) {
@@ -329,30 +309,24 @@ void writeStages(const std::string& path, const Results& results, const FormFact
   h5::OutputFile file(target.temporary(), path);
   {
     OutputGroup root(file);
-    StageWriter<OutputGroup> stages(root, results);
-    stages.head();
-    if (results.scene) stages.scene(*results.scene);
-    std::optional<OutputGroup> mesh;
-    if (results.mesh) mesh = stages.mesh(*results.mesh);
-    if (shown != nullptr) {
-      OutputGroup factors = stages.factors(*shown);
-      for (const auto& [name, source] : meshLinks(results)) factors.link(name, made(mesh), source);
-      writeMatrix(factors, shown->matrix, progress);
-    }
-    stages.solution();
-    stages.elements();
-    stages.gathered();
-    stages.heat();
-    stages.basis();
+    StageWriter<OutputGroup>(root, results)
+        .all(shown, [&](OutputGroup& group, const ExchangeMatrix& matrix) {
+          writeMatrix(group, matrix, progress);
+        });
   }
   file.close();
   target.commit();
 }
 
+/// Null: there are none.
+const FormFactors* factorsIn(const Results& results) {
+  return results.factors ? &*results.factors : nullptr;
+}
+
 }  // namespace
 
 void writeResults(const std::string& path, const Results& results, Progress& progress) {
-  writeStages(path, results, results.factors ? &*results.factors : nullptr, progress);
+  writeStages(path, results, factorsIn(results), progress);
 }
 
 void writeResults(const std::string& path, const Results& results, const FormFactors& factors,
@@ -369,48 +343,58 @@ constexpr double kMostGrowth = 1.5;
 constexpr const char* kWholeBytes = "whole_bytes";
 constexpr const char* kFresh = ".new";
 
-/// Whether the file has these form factors: another run may have replaced it since the caller
-/// looked.
-bool isOfTheSameFactors(const OutputGroup& root, const Results& results) {
-  if (!root.says("mesh", "key", results.mesh_key)) return false;
-  return root.says("form_factors", "key", results.factors_key) &&
-         root.says("form_factors", "geometry_hash", geometryHash(made(results.mesh).mesh));
+template <class T>
+bool isAsStored(const OutputGroup& root, const StageOf<T>& stage, const Results& results) {
+  const Keyed<T>& value = results.*stage.value;
+  return value && root.says(stage.group, "key", value.key);
+}
+
+/// Another run may have replaced the form factors since the caller looked.
+bool hasTheFactorsOf(const Results& results, const OutputGroup& root) {
+  return isAsStored(root, kStage<Stage::mesh>, results) &&
+         isAsStored(root, kStage<Stage::form_factors>, results) &&
+         root.says(kStage<Stage::form_factors>.group, "geometry_hash",
+                   geometryHash(results.mesh->mesh));
+}
+
+/// Puts the group that was written beside the group `name` into its place; if there is none, takes
+/// that one out.
+void takeOver(OutputGroup& root, const std::string& name) {
+  if (root.has(name + kFresh)) {
+    root.replace(name, name + kFresh);
+  } else if (root.has(name)) {
+    root.remove(name);
+  }
 }
 
 }  // namespace
 
 // Replaced stages are removed last: HDF5 could reuse their room, which is before the old end.
-bool updateResults(const std::string& path, const Results& results, const StagesAsStored& stored) {
+bool updateResults(const std::string& path, const Results& results, bool same_scene) {
   requireRows(results);
   const std::unique_ptr<h5::OutputFile> file = h5::OutputFile::extend(path);
   if (!file) return false;
   {
     OutputGroup root(*file);
-    if (!isOfTheSameFactors(root, results)) return false;
+    if (!hasTheFactorsOf(results, root)) return false;
     const std::optional<std::uint64_t> whole = root.number(kWholeBytes);
     if (whole && double(file->oldEnd()) > kMostGrowth * double(*whole)) return false;
     StageWriter<OutputGroup> stages(root, results, kFresh);
-    if (!stored.scene && results.scene) stages.scene(*results.scene);
-    if (!stored.solution) stages.solution();
-    if (!stored.elements) stages.elements();
-    if (!stored.gathered) stages.gathered();
-    if (!stored.heat) stages.heat();
-    if (!stored.basis) stages.basis();
+    std::vector<std::string> written;
+    if (!same_scene) {
+      stages.scene();
+      written.emplace_back("scene");
+    }
+    forEachStage([&](const auto& stage) {
+      if (isAsStored(root, stage, results)) return;
+      stages.write(stage);
+      written.emplace_back(stage.group);
+    });
     if (!whole) {
       const std::uint64_t bytes = file->oldEnd();
       root.attribute(kWholeBytes, h5::Number::u64, 1, &bytes);
     }
-    const std::pair<const char*, bool> groups[] = {
-        {"scene", stored.scene},     {"solution", stored.solution}, {"elements", stored.elements},
-        {"gather", stored.gathered}, {"heat", stored.heat},         {"basis", stored.basis}};
-    for (const auto& [name, as_stored] : groups) {
-      if (as_stored) continue;
-      if (root.has(std::string(name) + kFresh)) {
-        root.replace(name, std::string(name) + kFresh);
-      } else if (root.has(name)) {
-        root.remove(name);
-      }
-    }
+    for (const std::string& group : written) takeOver(root, group);
   }
   return file->closeExtended();
 }
@@ -419,20 +403,7 @@ std::size_t estimateResultsBytes(const Results& results) {
   // The superblock, the root, and the unused rest of HDF5's metadata blocks of 2 KiB.
   std::size_t bytes = 2048;
   SizeCounter root(bytes);
-  StageWriter<SizeCounter> stages(root, results);
-  stages.head();
-  if (results.scene) stages.scene(*results.scene);
-  if (results.mesh) stages.mesh(*results.mesh);
-  if (results.factors) {
-    SizeCounter factors = stages.factors(*results.factors);
-    for (const auto& link : meshLinks(results)) factors.link(link[0]);
-    countMatrix(factors, results.factors->matrix);
-  }
-  stages.solution();
-  stages.elements();
-  stages.gathered();
-  stages.heat();
-  stages.basis();
+  StageWriter<SizeCounter>(root, results).all(factorsIn(results), countMatrix);
   return bytes;
 }
 

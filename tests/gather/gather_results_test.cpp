@@ -19,15 +19,14 @@ Results sampleOf(GatherAt at) {
   results.scene = loadScene(std::string(RADIOSITY_SOURCE_DIR "/data/cornell-box.obj"));
   MeshOptions options;
   options.patches = 60;
-  results.mesh = meshScene(*results.scene, options, quiet);
-  results.mesh_key = "mesh";
+  results.mesh = {meshScene(*results.scene, options, quiet), "mesh"};
   GatherOptions gathering;
   gathering.at = at;
   gathering.passes = 3;
   gathering.resolution = 16;
-  results.gathered = gather(results.mesh->mesh, patchMaterials(*results.scene, results.mesh->mesh),
-                            gathering, quiet);
-  results.gather_key = "at=somewhere";
+  const PatchMesh& mesh = results.mesh->mesh;
+  results.gathered = {gather(mesh, patchMaterials(*results.scene, mesh), gathering, quiet),
+                      "at=somewhere"};
   return results;
 }
 
@@ -42,7 +41,7 @@ TEST_F(GatherResults, AreReadBackToTheBit) {
     ASSERT_TRUE(in.gathered);
     const Gathered& a = *out.gathered;
     const Gathered& b = *in.gathered;
-    EXPECT_EQ(in.gather_key, out.gather_key);
+    EXPECT_EQ(in.gathered.key, out.gathered.key);
     EXPECT_EQ(a.at, b.at);
     EXPECT_EQ(a.radiosity, b.radiosity);
     EXPECT_EQ(a.irradiance, b.irradiance);

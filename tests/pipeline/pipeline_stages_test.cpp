@@ -31,12 +31,12 @@ class Recorder : public PipelineObserver {
     said += "not reused " + path + ": " + why + "\n";
   }
   void planned(const Pipeline& pipeline, const FormFactorPlan& plan) override {
-    EXPECT_TRUE(pipeline.results().mesh.has_value());
+    EXPECT_TRUE(pipeline.results().mesh);
     EXPECT_GT(plan.bytes, 0u);
     events.emplace_back("plan");
   }
   void stage(const Pipeline& /*pipeline*/, const StageEvent& event) override {
-    constexpr std::array kStages = {"mesh", "factors", "solution", "gather", "elements"};
+    constexpr std::array kStages = {"mesh", "factors", "solution", "elements", "gather"};
     constexpr std::array kActions = {"reused", "computed", "recomputed", "kept", "dropped"};
     std::string text = std::string(kStages.at(std::size_t(event.stage))) + " " +
                        kActions.at(std::size_t(event.action));
@@ -141,16 +141,16 @@ TEST_F(PipelineStages, StagesMadeWithoutAPipelineAreReusedByTheirKeys) {
   makeCoarse(options);
   Results results;
   results.scene = loadScene(kBox);
-  results.mesh = meshScene(*results.scene, options.mesh, quiet);
+  results.mesh = {meshScene(*results.scene, options.mesh, quiet),
+                  keyOfMesh(options.mesh, *results.scene)};
   const PatchMesh& mesh = results.mesh->mesh;
   // Apart from the results, as for shared form factors.
   const FormFactors factors = computeFormFactors(mesh, options.factors, quiet);
   results.materials = patchMaterials(*results.scene, mesh);
-  results.solution = solve(factors, *results.materials, mesh, options.solve, quiet);
-  results.mesh_key = keyOfMesh(options.mesh, *results.scene);
-  results.factors_key = keyOfFactors(options.factors, mesh);
-  results.solution_key = keyOfSolution(options.solve, *results.materials, results.factors_key,
-                                       nameOf(kFactorsFromNames, factors.method));
+  results.factors.key = keyOfFactors(options.factors, mesh);
+  results.solution = {solve(factors, *results.materials, mesh, options.solve, quiet),
+                      keyOfSolution(options.solve, *results.materials, results.factors.key,
+                                    nameOf(kFactorsFromNames, factors.method))};
   writeResults(file, results, factors, quiet);
 
   Recorder recorder;
@@ -399,6 +399,19 @@ TEST_F(PipelineStages, SavingKeepsValidStagesAndDropsTheRest) {
   EXPECT_TRUE(results.factors && results.gathered && !results.solution);
 }
 
+TEST_F(PipelineStages, AStageOfUnknownInputsIsNotKept) {
+  const std::string file = savedBox();
+  Results results = readResults(file);
+  results.gathered.key = "at=vertices passes=3";
+  writeResults(file, results, progress_);
+  Pipeline pipeline(progress_, &told_);
+  pipeline.open(file);
+  pipeline.solution();
+  told_.take();
+  pipeline.keepLaterStages();
+  EXPECT_EQ(told_.take(), Events{"gather dropped: its key is not readable"});
+}
+
 TEST_F(PipelineStages, ACheckpointLosesNothing) {
   const std::string file = savedBox();
   Pipeline pipeline(progress_, &told_);
@@ -406,7 +419,7 @@ TEST_F(PipelineStages, ACheckpointLosesNothing) {
   pipeline.options().factors.resolution = 64;
   pipeline.factors();
   pipeline.checkpoint(file);
-  EXPECT_TRUE(readResults(file).gathered.has_value()) << "of the same mesh";
+  EXPECT_TRUE(readResults(file).gathered) << "of the same mesh";
   told_.take();
   pipeline.gathered();
   EXPECT_EQ(told_.take(), Events{"gather reused: " + file});
@@ -440,7 +453,7 @@ TEST_F(PipelineStages, ASolutionWithoutValuesIsNotSaved) {
   const std::string file = path("singular.h5");
   pipeline.save(file);
   const Results results = readResults(file);
-  EXPECT_TRUE(results.factors.has_value());
+  EXPECT_TRUE(results.factors);
   EXPECT_FALSE(results.solution || results.materials);
 }
 
@@ -482,8 +495,8 @@ TEST_F(PipelineStages, AFilesOwnMaterialsBelongToItsMesh) {
     materials.reflectance.push_back(of_scene.reflectance[rgb]);
     materials.emission.push_back(of_scene.emission[rgb]);
   }
-  own.solution.reset();
-  own.gathered.reset();
+  own.solution = {};
+  own.gathered = {};
   writeResults(file, own, progress_);
 
   Pipeline pipeline(progress_, &told_);
@@ -519,16 +532,16 @@ TEST_F(PipelineStages, KeysKeepTheirText) {
     EXPECT_TRUE(std::regex_match(key, std::regex(pattern))) << key;
   };
   const std::string hash = "[0-9a-f]{16}";
-  expectKey(results.mesh_key,
+  expectKey(results.mesh.key,
             "patches=60 max-edge=0 weld=1e-07 faces-as-patches=off scene=" + hash);
   expectKey(
-      results.factors_key,
+      results.factors.key,
       "method=hemicube seed=1 resolution=32 symmetrize=off near=off precision=single mesh=" + hash);
-  expectKey(results.solution_key,
+  expectKey(results.solution.key,
             "solver=auto solve-tolerance=1e-06 max-iterations=10000 "
             "materials=" +
                 hash + " sky=0 factors=" + hash);
-  expectKey(results.gather_key,
+  expectKey(results.gathered.key,
             "at=vertices passes=3 gather-tolerance=0.0001 resolution=16 seed=1 "
             "crease=30 materials=" +
                 hash + " sky=0 mesh=" + hash);
@@ -576,7 +589,7 @@ TEST_F(PipelineStages, ADamagedFileIsAnErrorOrNotReused) {
   pipeline.mesh();
   EXPECT_EQ(told_.take(), Events{"mesh computed"});
   pipeline.save(file);
-  EXPECT_TRUE(readResults(file).mesh.has_value());
+  EXPECT_TRUE(readResults(file).mesh);
 }
 
 TEST_F(PipelineStages, AMatrixOfAnotherRunIsNotTaken) {

@@ -334,7 +334,7 @@ TEST_F(ResultsDamage, NoOtherFileIsRead) {
     EXPECT_TRUE(said.starts_with(at + words)) << said;
     // Neither is such a file extended, nor taken for another program's.
     const std::vector<char> before = load(file());
-    EXPECT_FALSE(updateResults(file(), results, {}));
+    EXPECT_FALSE(updateResults(file(), results, false));
     EXPECT_EQ(before, load(file()));
     EXPECT_FALSE(isForeignHdf5(file()));
     EXPECT_FALSE(sceneInResults(file()));
@@ -355,7 +355,7 @@ TEST_F(ResultsDamage, AGroupLinkedOutsideIsNotExtended) {
       H5Lcreate_external(other.c_str(), group, open, group, H5P_DEFAULT, H5P_DEFAULT);
     });
     EXPECT_TRUE(refusal().starts_with(file() + ": " + group + " is a link to another file"));
-    EXPECT_FALSE(updateResults(file(), results, {}));
+    EXPECT_FALSE(updateResults(file(), results, false));
     EXPECT_EQ(whole, load(other));
   }
 }

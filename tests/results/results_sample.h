@@ -422,25 +422,18 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   Results r;
   r.version = "0.1.0";
   r.scene = scene();
-  r.mesh = {mesh(side), meshReport()};
-  r.mesh_key = "patches=100";
-  r.factors = factors(r.mesh->mesh, precision);
-  r.factors_key = "patches=100 resolution=256";
+  r.mesh = {MeshResult{mesh(side), meshReport()}, "patches=100"};
+  r.factors = {factors(r.mesh->mesh, precision), "patches=100 resolution=256"};
   const std::size_t n = r.mesh->mesh.size();
   r.materials = materials(n, bands);
-  r.solution = solution(n, bands);
-  r.solution_key = "tolerance=1e-6";
-  r.elements = elements(r.mesh->mesh, bands);
-  r.elements_key = "element-tolerance=0.01";
+  r.solution = {solution(n, bands), "tolerance=1e-6"};
+  r.elements = {elements(r.mesh->mesh, bands), "element-tolerance=0.01"};
   // Both kinds, one in each sample.
-  r.gathered = gathered(
-      r.mesh->mesh,
-      precision == Precision::single_precision ? GatherAt::patches : GatherAt::vertices, bands);
-  r.gather_key = "passes=2";
-  r.heat = heat(r.mesh->mesh, bands);
-  r.heat_key = "sky-temperature=3";
-  r.basis = basis(n, bands);
-  r.basis_key = "solver=cg reflectance=12ab";
+  const GatherAt at =
+      precision == Precision::single_precision ? GatherAt::patches : GatherAt::vertices;
+  r.gathered = {gathered(r.mesh->mesh, at, bands), "passes=2"};
+  r.heat = {heat(r.mesh->mesh, bands), "sky-temperature=3"};
+  r.basis = {basis(n, bands), "solver=cg reflectance=12ab"};
   return r;
 }
 
@@ -592,9 +585,14 @@ inline auto members(const LightBasis& s) {
   const auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
 }
+template <class T>
+auto members(const Keyed<T>& s) {
+  const auto& [a, b] = s;
+  return std::tie(a, b);
+}
 inline auto members(const Results& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
+  const auto& [a, b, c, d, e, f, g, h, i, j] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
 
 template <class T>
