@@ -9,6 +9,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/exchange_matrix.h"
+#include "radiosity/report_line.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -25,6 +26,21 @@ struct ClosureReport {
   std::size_t adjustable = 0;  ///< pairs that could move
   std::size_t emptied = 0;     ///< of them moved to 0 and held there
   std::size_t fixed_rows = 0;  ///< rows beyond the tolerance in which nothing could move
+
+  /// Labels are those of a closure that changed something.
+  static void describe(auto& list, auto& r) {
+    list({"largest_residual_before"}, r.largest_residual_before);
+    list({"rms_residual_before"}, r.rms_residual_before);
+    list({"largest_residual", "closure: rows off by, now", "", "closure_residual"},
+         r.largest_residual);
+    list({"adjustable", "closure: pairs that could move", "", "closure_adjustable"}, r.adjustable);
+    list({"largest_move", "closure: largest move", "", "closure_largest_move"}, r.largest_move);
+    list({"relative_move", "closure: move, relL2", "", "closure_relative_move"}, r.relative_move);
+    list({"emptied", "closure: moved to 0", "", "closure_emptied"}, r.emptied);
+    list({"fixed_rows", "closure: rows out of reach", "", "closure_fixed_rows"}, r.fixed_rows);
+    list({"iterations", "closure: iterations", "", "closure_iterations"}, r.iterations);
+    list({"reached"}, r.reached);
+  }
 };
 
 /// The distance of N row sums from their N targets.

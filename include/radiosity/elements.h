@@ -11,6 +11,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/report_line.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -98,6 +99,25 @@ struct ElementReport {
   double ray_error = 0;
   double seconds_direct = 0;  ///< by the clock
   double seconds_indirect = 0;
+
+  static void describe(auto& list, auto& r) {
+    list({"direct"}, r.direct);
+    list({"roots"}, r.roots);
+    list({"emitters", "emitters"}, r.emitters);
+    list({"as_solved", "small parts out of view, as solved"}, r.as_solved);
+    list({"direct_vertices", "vertices evaluated, direct"}, r.direct_vertices);
+    list({"direct_by_rays", "  of them by rays"}, r.direct_by_rays);
+    list({"indirect_vertices", "vertices evaluated, indirect"}, r.indirect_vertices);
+    list({"uniform_vertices"}, r.uniform_vertices);
+    list({"unrefined", "left coarse at the cap"}, r.unrefined);
+    list({"edge", "shortest edge", "m", "shortest_edge_m"}, r.edge);
+    list({"rays"}, r.rays);
+    list({"rays_a_vertex", "rays a vertex, indirect, at least"}, r.rays_a_vertex);
+    list({"interpolation_error", "error of interpolation"}, r.interpolation_error);
+    list({"ray_error", "error of rays"}, r.ray_error);
+    list({"seconds_direct", "time, direct", "s"}, r.seconds_direct);
+    list({"seconds_indirect", "time, indirect", "s"}, r.seconds_indirect);
+  }
 };
 
 /// Irradiance in two fields, view independent.

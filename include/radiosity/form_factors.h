@@ -13,6 +13,7 @@
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factor_method.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/report_line.h"
 #include "radiosity/row_journal.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
@@ -158,6 +159,40 @@ struct ExactReport {
   double seconds_occluded = 0;    ///< clipping
   double seconds_assembly = 0;    ///< summing and storing
   double seconds_finish = 0;      ///< row sums, error figures, closure
+
+  static void describe(auto& list, auto& r) {
+    list({"elements", "elements"}, r.elements);
+    list({"black_elements", "  and of black backs"}, r.black_elements);
+    list({"facets", "facets"}, r.facets);
+    list({"occluders", "occluders"}, r.occluders);
+    list({"solids", "  of them convex solids"}, r.solids);
+    list({"skipped_hull", "skipped: cannot block"}, r.skipped_hull);
+    list({"no_exchange", "pairs without exchange", "", "pairs_no_exchange"}, r.no_exchange);
+    list({"unoccluded", "pairs unoccluded", "", "pairs_unoccluded"}, r.unoccluded);
+    list({"hidden", "pairs hidden", "", "pairs_hidden"}, r.hidden);
+    list({"occluded", "pairs occluded", "", "pairs_occluded"}, r.occluded);
+    list({"facet_pairs", "facet pairs"}, r.facet_pairs);
+    list({"facet_pairs_no_exchange", "skipped: no exchange", "", "skipped_facet_pairs"},
+         r.facet_pairs_no_exchange);
+    list({"facet_pairs_unoccluded", "skipped: visibility", "", "skipped_visibility"},
+         r.facet_pairs_unoccluded);
+    list({"shaft_tests", "shaft tests"}, r.shaft_tests);
+    list({"contour", "values by contour"}, r.contour);
+    list({"lambert", "values by Lambert"}, r.lambert);
+    list({"product", "values by quadrature"}, r.product);
+    list({"clipped", "  clipped to front sides"}, r.clipped);
+    list({"points", "points of occluded pairs"}, r.points);
+    list({"subdivided", "occluded pairs refined"}, r.subdivided);
+    list({"evaluated_again", "occluded pairs again in double"}, r.evaluated_again);
+    list({"rechecked", "evaluated again to check"}, r.rechecked);
+    list({"recheck_ratio", "  row error / figure, 99%"}, r.recheck_ratio);
+    list({"seconds_prepare", "time: preparing", "s"}, r.seconds_prepare);
+    list({"seconds_visibility", "time: visibility", "s"}, r.seconds_visibility);
+    list({"seconds_unoccluded", "time: closed forms", "s"}, r.seconds_unoccluded);
+    list({"seconds_occluded", "time: occluded pairs", "s"}, r.seconds_occluded);
+    list({"seconds_assembly", "time: storing rows", "s"}, r.seconds_assembly);
+    list({"seconds_finish", "time: finishing", "s"}, r.seconds_finish);
+  }
 };
 
 /// Counts and times of rays.
@@ -176,23 +211,68 @@ struct RayReport {
   double seconds_cast = 0;
   double seconds_merge = 0;
   double seconds_close = 0;
+
+  static void describe(auto& list, auto& r) {
+    list({"triangles", "triangles"}, r.triangles);
+    list({"rays", "rays"}, r.rays);
+    list({"leaked", "  leaked out, not counted", "", "rays_leaked"}, r.leaked);
+    list({"rounds", "rounds"}, r.rounds);
+    list({"short_rows", "rows short of the tolerance"}, r.short_rows);
+    list({"loosened_tolerance", "  which was loosened to"}, r.loosened_tolerance);
+    list({"largest_row_figure"}, r.largest_row_figure);
+    list({"seconds_prepare", "time: preparing", "s"}, r.seconds_prepare);
+    list({"seconds_cast", "time: casting", "s"}, r.seconds_cast);
+    list({"seconds_merge", "time: merging", "s"}, r.seconds_merge);
+    list({"seconds_close", "time: closing rows", "s"}, r.seconds_close);
+  }
 };
 
-/// The report of a computation: its method, counts, times and errors.
-struct FormFactorReport {
-  std::string method_reason;  ///< why this method, if it was chosen automatically
+/// Counts of hemicubes, summed over them and, of polygons, over their faces.
+struct HemicubeReport {
   std::size_t hemicubes = 0;
-  std::size_t empty_rows = 0;           ///< degenerate patches: no hemicube, no elements
-  std::size_t polygons = 0;             ///< planar polygons of the mesh
-  std::size_t rasterised_polygons = 0;  ///< polygon-face fills, summed over hemicubes and faces
+  std::size_t pixels = 0;               ///< resolved
+  std::size_t rasterised_polygons = 0;  ///< polygon-face fills
   std::size_t skipped_own_plane = 0;    ///< polygons skipped since the eye lies in their plane
   std::size_t skipped_horizon = 0;      ///< behind the eye's horizon
   std::size_t skipped_facing_away = 0;  ///< back faces of closed solids seen from outside
   std::size_t skipped_face = 0;         ///< polygon-face pairs outside the face's pyramid
   std::size_t skipped_hidden = 0;       ///< behind drawn polygons, or between pixels' centres
-  std::size_t pixels = 0;               ///< resolved, summed over hemicubes
   std::size_t near_pairs = 0;           ///< entries replaced by area-to-area values
   std::size_t capped = 0;               ///< rows whose near entries were limited to a sum of 1
+
+  HemicubeReport& operator+=(const HemicubeReport& other) {
+    hemicubes += other.hemicubes;
+    pixels += other.pixels;
+    rasterised_polygons += other.rasterised_polygons;
+    skipped_own_plane += other.skipped_own_plane;
+    skipped_horizon += other.skipped_horizon;
+    skipped_facing_away += other.skipped_facing_away;
+    skipped_face += other.skipped_face;
+    skipped_hidden += other.skipped_hidden;
+    near_pairs += other.near_pairs;
+    capped += other.capped;
+    return *this;
+  }
+
+  static void describe(auto& list, auto& r) {
+    list({"hemicubes", "hemicubes"}, r.hemicubes);
+    list({"pixels", "pixels resolved"}, r.pixels);
+    list({"rasterised_polygons", "polygons rasterised"}, r.rasterised_polygons);
+    list({"skipped_own_plane", "skipped: own plane"}, r.skipped_own_plane);
+    list({"skipped_horizon", "skipped: below horizon"}, r.skipped_horizon);
+    list({"skipped_facing_away", "skipped: facing away"}, r.skipped_facing_away);
+    list({"skipped_face", "skipped: outside a face"}, r.skipped_face);
+    list({"skipped_hidden", "skipped: hidden"}, r.skipped_hidden);
+    list({"near_pairs", "near entries made exact"}, r.near_pairs);
+    list({"capped", "  rows held at 1"}, r.capped);
+  }
+};
+
+/// The report of a computation: its method, counts, times and errors.
+struct FormFactorReport {
+  std::string method_reason;   ///< why this method, if it was chosen automatically
+  std::size_t empty_rows = 0;  ///< degenerate patches: no hemicube, no elements
+  std::size_t polygons = 0;    ///< planar polygons of the mesh
   /// Rays and hemicube: rows that are exact, not estimated; empty if FormFactorOptions::exact_rows
   /// asked for none.
   std::optional<std::size_t> exact_rows;
@@ -213,9 +293,35 @@ struct FormFactorReport {
   bool symmetrized = false;
   ClosureReport closure;          ///< if symmetrized, or exact and closed
   bool closure_enforced = false;  ///< exact: rows were closed, not only measured
+  // Of the method that ran:
   ExactReport exact;
   RayReport rays;
+  HemicubeReport hemicube;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
+
+  /// Without `hemicube`, whose fields are in the same group as these.
+  static void describe(auto& list, auto& r) {
+    list({"method_reason", "  because"}, r.method_reason);
+    list({"exact_rows", "exact rows, of emitters"}, r.exact_rows);
+    list({"empty_rows", "empty rows (degenerate)"}, r.empty_rows);
+    list({"seconds", "time", "s"}, r.seconds);
+    list({"seconds_plan", "  of that, planning", "s"}, r.seconds_plan);
+    list({"estimated_seconds", "  the rest estimated before", "s"}, r.estimated_seconds);
+    list({"simd_target", "instruction set"}, r.simd_target);
+    list({"matrix_bytes", "matrix in memory", "bytes"}, r.matrix_bytes);
+    list({"estimated_bytes", "  estimated before", "bytes"}, r.estimated_bytes);
+    list({"polygons", "planar polygons"}, r.polygons);
+    list.part("exact", r.exact);
+    list.part("rays", r.rays);
+    list({"closed", "closed scene"}, r.closed);
+    list({"error_figure"}, r.error_figure);
+    list({"largest_row_error"}, r.largest_row_error);
+    list({"reciprocity_residual"}, r.reciprocity_residual);
+    list({"symmetrized"}, r.symmetrized);
+    list({"closure_enforced"}, r.closure_enforced);
+    list.part("closure", r.closure);
+    list.notes(r.notes);
+  }
 };
 
 /// The matrix and the three accounts of each row, which sum to 1: seen fronts (the row sum), seen

@@ -10,6 +10,7 @@
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/report_line.h"
 #include "radiosity/solve.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
@@ -51,6 +52,14 @@ struct GatherPass {
   /// area. emitted + from_sky = absorbed + to_sky + on_backs + in_flight + imbalance.
   EnergyAccount energy;
   std::vector<double> in_flight;  ///< W a band, still to be reflected: sum of area (B_k - B_(k-1))
+
+  static void describe(auto& list, auto& p) {
+    list({"seconds", "", "s"}, p.seconds);
+    list({"change"}, p.change);
+    list({"bound", "", "W/m^2"}, p.bound);
+    list.part("energy", p.energy);
+    list({"in_flight", "", "W"}, p.in_flight);
+  }
 };
 
 enum class GatherStatus {
@@ -77,6 +86,19 @@ struct GatherSummary {
   std::string message;  ///< plain words, with numbers; says if B is not usable
   bool usable() const { return status != GatherStatus::unbalanced; }
   std::vector<Note> notes;  ///< on the device that drew the hemicubes, and others
+
+  /// Without `passes`.
+  static void describe(auto& list, auto& s) {
+    list({"status"}, s.status);
+    list({"hemicubes", "hemicubes a pass", "", "hemicubes_per_pass"}, s.hemicubes);
+    list({"pixels"}, s.pixels);
+    list({"seconds", "time", "s"}, s.seconds);
+    list({"bytes", "memory", "bytes"}, s.bytes);
+    list({"simd_target", "instruction set"}, s.simd_target);
+    list({"closed", "closed scene"}, s.closed);
+    list({"message", "in words"}, s.message);
+    list.notes(s.notes);
+  }
 };
 
 /// L eyes: the N patches, or the G corner groups of the mesh. An eye without area (degenerate

@@ -10,6 +10,7 @@
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/report_line.h"
 #include "radiosity/scene.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
@@ -82,6 +83,15 @@ struct HeatBalance {
   double imbalance = 0;   ///< from rows that do not sum to 1, missing reciprocity and the residual
   double convected = 0;   ///< sum of A h (T - ambient)
   double throughput = 0;  ///< sum of the net powers above 0
+
+  static void describe(auto& list, auto& b) {
+    list({"radiated"}, b.radiated);
+    list({"to_sky"}, b.to_sky);
+    list({"on_backs"}, b.on_backs);
+    list({"imbalance"}, b.imbalance);
+    list({"convected"}, b.convected);
+    list({"throughput"}, b.throughput);
+  }
 };
 
 struct HeatSummary {
@@ -97,6 +107,18 @@ struct HeatSummary {
   double seconds = 0;
   std::string message;  ///< plain words, with numbers; says whether the result is usable
   bool usable() const { return status == HeatStatus::converged; }
+
+  /// Without `balance`.
+  static void describe(auto& list, auto& s) {
+    list({"status", "status"}, s.status);
+    list({"iterations", "steps of Newton's method"}, s.iterations);
+    list({"linear_steps"}, s.linear_steps);
+    list({"residual", "residual (relative)"}, s.residual);
+    list({"balance_residual", "heat balance (relative)"}, s.balance_residual);
+    list({"undetermined"}, s.undetermined);
+    list({"seconds", "time", "s"}, s.seconds);
+    list({"message", "in words"}, s.message);
+  }
 };
 
 /// Conditions as a person wrote them.
@@ -192,6 +214,20 @@ struct SurfaceHeat {
   /// The irradiance's error due to the form factors, about, W/m^2: the rows' error figures times
   /// the root mean square of J, as if errors of entries were independent. Empty: unknown.
   std::optional<double> irradiance_error;
+
+  static void describe(auto& list, auto& s) {
+    list({"name"}, s.name);
+    list({"area"}, s.area);
+    list({"temperature"}, s.temperature);
+    list({"lowest"}, s.lowest);
+    list({"highest"}, s.highest);
+    list({"radiosity"}, s.radiosity);
+    list({"irradiance"}, s.irradiance);
+    list({"net_flux"}, s.net_flux);
+    list({"radiated"}, s.radiated);
+    list({"convected"}, s.convected);
+    list({"irradiance_error"}, s.irradiance_error);
+  }
 };
 /// Surfaces in one of solution.conditions.groups are one.
 std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const PatchMesh& mesh,

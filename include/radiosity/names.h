@@ -84,6 +84,13 @@ inline constexpr NameTable<GatherStatus, 4> kGatherStatusNames{
      {GatherStatus::no_light, "no_light"},
      {GatherStatus::unbalanced, "unbalanced"}}};
 
+// The table of an enum that a report holds.
+constexpr const auto& tableOf(Solver) { return kSolverNames; }
+constexpr const auto& tableOf(SolveStatus) { return kSolveStatusNames; }
+constexpr const auto& tableOf(HeatStatus) { return kHeatStatusNames; }
+constexpr const auto& tableOf(GatherStatus) { return kGatherStatusNames; }
+constexpr const auto& tableOf(DirectLight) { return kDirectLightNames; }
+
 /// The word for a value. Throws logic_error if the table lacks it.
 template <class Enum, std::size_t N>
 std::string nameOf(const NameTable<Enum, N>& table, Enum value) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/report_line.h"
 #include "radiosity/scene.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
@@ -160,6 +161,37 @@ struct MeshReport {
   std::size_t clusters = 0;  ///< unknowns that patches share; 0: each patch has its own
   double widest_cone = 0;  ///< degrees; the largest angle of a patch's normal to its cluster's mean
   std::vector<Note> notes;  ///< repairs, by name
+
+  static void describe(auto& list, auto& r) {
+    list({"clusters", "clusters"}, r.clusters);
+    list({"widest_cone", "  normals off their mean by", "deg"}, r.widest_cone);
+    list({"quads", "quads"}, r.quads);
+    list({"triangles", "triangles"}, r.triangles);
+    list({"polygons", "planar polygons"}, r.polygons);
+    list({"longest_edge", "longest edge", "m"}, r.longest_edge);
+    list({"smallest_angle", "smallest angle", "deg"}, r.smallest_angle);
+    list({"smallest_angle_surface", "  on surface"}, r.smallest_angle_surface);
+    list({"t_junctions", "T-junctions"}, r.t_junctions);
+    list({"cuts", "cuts where faces meet"}, r.cuts);
+    list({"split_edges", "edges split"}, r.split_edges);
+    list({"welded_vertices", "vertices welded"}, r.welded_vertices);
+    list({"degenerate_faces", "degenerate faces"}, r.degenerate_faces);
+    list({"duplicate_faces", "duplicate faces"}, r.duplicate_faces);
+    list({"nonplanar_faces", "non-planar faces"}, r.nonplanar_faces);
+    list({"largest_deviation", "  largest deviation", "m"}, r.largest_deviation);
+    list({"hidden_sides", "hidden sides dropped"}, r.hidden_sides);
+    list({"nonmanifold_edges", "non-manifold edges"}, r.nonmanifold_edges);
+    list({"crossings", "crossings not repaired"}, r.crossings);
+    list.table("surfaces", r.surfaces, [](auto& column) {
+      column("name", &SurfaceAreas::name);
+      column("given", &SurfaceAreas::given, "m^2");
+      column("kept", &SurfaceAreas::kept, "m^2");
+      column("buried", &SurfaceAreas::buried, "m^2");
+      column("overlapped", &SurfaceAreas::overlapped, "m^2");
+      column("degenerate", &SurfaceAreas::degenerate, "m^2");
+    });
+    list.notes(r.notes);
+  }
 };
 
 struct MeshResult {

@@ -22,6 +22,7 @@
 #include "radiosity/point_factors.h"
 #include "radiosity/point_materials.h"
 #include "radiosity/render.h"
+#include "radiosity/report_line.h"
 #include "radiosity/results.h"
 #include "radiosity/row_journal.h"
 #include "radiosity/scene.h"

@@ -9,6 +9,7 @@
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/report_line.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -63,6 +64,15 @@ struct EnergyAccount {
   std::vector<double> to_sky;
   std::vector<double> on_backs;
   std::vector<double> imbalance;
+
+  static void describe(auto& list, auto& e) {
+    list({"emitted", "", "W"}, e.emitted);
+    list({"from_sky", "", "W"}, e.from_sky);
+    list({"absorbed", "", "W"}, e.absorbed);
+    list({"to_sky", "", "W"}, e.to_sky);
+    list({"on_backs", "", "W"}, e.on_backs);
+    list({"imbalance", "", "W"}, e.imbalance);
+  }
 };
 
 /// Work skipped because the scene did not need it.
@@ -70,6 +80,14 @@ struct SolveSkips {
   std::size_t black_patches = 0;  ///< reflectance 0 in every band solved: B = E without their rows
   int dark_bands = 0;             ///< no patch emits: B = 0, not solved
   int equal_bands = 0;            ///< same reflectance and emission as an earlier band: copied
+
+  static void describe(auto& list, auto& s) {
+    list({"black_patches", "skipped: rows of black patches", "", "skipped_black_patches"},
+         s.black_patches);
+    list({"dark_bands", "skipped: bands without light", "", "skipped_dark_bands"}, s.dark_bands);
+    list({"equal_bands", "skipped: bands equal to another", "", "skipped_equal_bands"},
+         s.equal_bands);
+  }
 };
 
 struct SolveSummary {
@@ -94,6 +112,20 @@ struct SolveSummary {
   std::string message;  ///< plain words, with numbers; says if B is usable
   bool usable() const {
     return status == SolveStatus::converged || status == SolveStatus::no_light;
+  }
+
+  static void describe(auto& list, auto& s) {
+    list({"status", "status"}, s.status);
+    list({"solver"}, s.solver);
+    list({"iterations", "iterations"}, s.iterations);
+    list({"rows", "rows multiplied"}, s.rows);
+    list.part("skipped", s.skipped);
+    list({"residual", "residual (relative)"}, s.residual);
+    list({"error_bound"}, s.error_bound);
+    list({"residual_history"}, s.residual_history);
+    list({"seconds", "time", "s"}, s.seconds);
+    list.part("energy", s.energy);
+    list({"message", "in words"}, s.message);
   }
 };
 

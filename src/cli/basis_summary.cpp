@@ -15,11 +15,7 @@ void summarizeBasis(Report& report, const LightBasis& basis, Detail detail) {
   report.text("solver", "solver", nameOf(kSolverNames, s.solver));
   report.count("sets", "sets", basis.names.size());
   report.number("residual", "residual (relative)", s.residual);
-  if (s.error_bound) {
-    report.number("error_bound_W_per_m2", "|B - B*| is at most", *s.error_bound, "W/m^2");
-  } else {
-    report.text("error_bound_W_per_m2", "|B - B*| is at most", "no certificate");
-  }
+  boundLine(report, s.error_bound);
   report.seconds("seconds", "time", s.seconds);
   const auto bands = std::size_t(basis.bands);
   std::vector<std::vector<std::string>> rows;

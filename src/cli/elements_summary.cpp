@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cli/field_lines.h"
 #include "cli/summaries.h"
 
 namespace radiosity::cli {
@@ -45,23 +46,17 @@ void reportMatrixError(Report& report, const FormFactors& factors) {
 void summarizeElements(Report& report, const Elements& elements, const FormFactors& factors) {
   const ElementReport& r = elements.report;
   report.section("elements", "Elements");
-  report.text("direct", "direct light", directText(r.direct));
-  report.count("emitters", "emitters", r.emitters);
-  report.count("as_solved", "small parts out of view, as solved", r.as_solved);
-  report.count("direct_vertices", "vertices evaluated, direct", r.direct_vertices);
-  report.count("direct_by_rays", "  of them by rays", r.direct_by_rays);
-  report.count("indirect_vertices", "vertices evaluated, indirect", r.indirect_vertices);
-  report.largeCount("uniform_vertices", "a uniform grid as fine", r.uniform_vertices);
-  report.count("unrefined", "left coarse at the cap", r.unrefined);
-  report.number("shortest_edge_m", "shortest edge", r.edge, "m");
-  report.count("rays_a_vertex", "rays a vertex, indirect, at least", std::size_t(r.rays_a_vertex));
-  report.number("interpolation_error", "error of interpolation", r.interpolation_error);
-  report.number("ray_error", "error of rays", r.ray_error);
-  reportMatrixError(report, factors);
-  report.text("largest_error", "largest error",
-              largestError(r, factors.error.empty() ? 0 : factors.report.error_figure));
-  report.seconds("seconds_direct", "time, direct", r.seconds_direct);
-  report.seconds("seconds_indirect", "time, indirect", r.seconds_indirect);
+  FieldLines lines(report);
+  lines.after("direct", [&] { report.text("direct", "direct light", directText(r.direct)); });
+  lines.after("uniform_vertices", [&] {
+    report.largeCount("uniform_vertices", "a uniform grid as fine", r.uniform_vertices);
+  });
+  lines.after("ray_error", [&] {
+    reportMatrixError(report, factors);
+    report.text("largest_error", "largest error",
+                largestError(r, factors.error.empty() ? 0 : factors.report.error_figure));
+  });
+  r.describe(lines, r);
 }
 
 void summarizeFinalGather(Report& report, const ElementReport& sources,

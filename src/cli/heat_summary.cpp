@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/field_lines.h"
 #include "cli/section.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
@@ -147,21 +148,24 @@ void summarizeHeat(Report& report, const HeatSolution& heat, const FormFactors& 
   if (detail == Detail::brief) report.line("", oneLine(s.message));
   {
     const Section section(report, detail, "heat", "Heat exchange");
-    report.text("status", "status", nameOf(kHeatStatusNames, s.status));
-    report.count("bands", "bands", std::size_t(heat.bands));
-    report.number("sky_temperature_K", "sky", options.sky_temperature, "K");
-    report.count("iterations", "steps of Newton's method", std::size_t(s.iterations));
-    report.text("linear_solver", "linear systems",
-                s.linear_steps == 0 ? "solved directly"
-                                    : fmt::format("GMRES, {} products", s.linear_steps));
-    report.number("residual", "residual (relative)", s.residual);
-    report.number("balance_residual", "heat balance (relative)", s.balance_residual);
-    report.number("tolerance", "  asked for", options.tolerance);
-    report.seconds("seconds", "time", s.seconds);
-    factorError(report, factors);
-    balanceFigures(report, s.balance, given_off);
-    surfaceTable(report, surfaces);
-    report.text("message", "in words", oneLine(s.message));
+    FieldLines lines(report);
+    lines.after("status", [&] {
+      report.count("bands", "bands", std::size_t(heat.bands));
+      report.number("sky_temperature_K", "sky", options.sky_temperature, "K");
+    });
+    lines.after("linear_steps", [&] {
+      report.text("linear_solver", "linear systems",
+                  s.linear_steps == 0 ? "solved directly"
+                                      : fmt::format("GMRES, {} products", s.linear_steps));
+    });
+    lines.after("balance_residual",
+                [&] { report.number("tolerance", "  asked for", options.tolerance); });
+    lines.after("seconds", [&] {
+      factorError(report, factors);
+      balanceFigures(report, s.balance, given_off);
+      surfaceTable(report, surfaces);
+    });
+    s.describe(lines, s);
     usableLine(report, s.usable(), factors);
   }
   warnings(report, s, factors.method, given_off, surfaces, options);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "base/figure_text.h"
+#include "cli/field_lines.h"
 #include "cli/section.h"
 #include "cli/words.h"
 #include "radiosity/names.h"
@@ -173,26 +174,9 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
     report.count("patches", "patches", mesh.size());
     report.count("fronts", "of them fronts", mesh.frontCount());
     report.count("unknowns", "unknowns", mesh.unknowns());
-    report.count("clusters", "clusters", r.clusters);
-    report.number("widest_cone_deg", "  normals off their mean by", r.widest_cone, "deg");
-    report.count("quads", "quads", r.quads);
-    report.count("triangles", "triangles", r.triangles);
-    report.count("polygons", "planar polygons", r.polygons);
-    report.number("area_m2", "area of all patches", area, "m^2");
-    report.number("longest_edge_m", "longest edge", r.longest_edge, "m");
-    report.number("smallest_angle_deg", "smallest angle", r.smallest_angle, "deg");
-    report.text("smallest_angle_surface", "  on surface", r.smallest_angle_surface);
-    report.count("t_junctions", "T-junctions", r.t_junctions);
-    report.count("cuts", "cuts where faces meet", r.cuts);
-    report.count("split_edges", "edges split", r.split_edges);
-    report.count("welded_vertices", "vertices welded", r.welded_vertices);
-    report.count("degenerate_faces", "degenerate faces", r.degenerate_faces);
-    report.count("duplicate_faces", "duplicate faces", r.duplicate_faces);
-    report.count("nonplanar_faces", "non-planar faces", r.nonplanar_faces);
-    report.number("largest_deviation_m", "  largest deviation", r.largest_deviation, "m");
-    report.count("hidden_sides", "hidden sides dropped", r.hidden_sides);
-    report.count("nonmanifold_edges", "non-manifold edges", r.nonmanifold_edges);
-    report.count("crossings", "crossings not repaired", r.crossings);
+    FieldLines lines(report);
+    lines.after("polygons", [&] { report.number("area_m2", "area of all patches", area, "m^2"); });
+    r.describe(lines, r);
     surfaceAreas(report, r);
   }
   if (detail != Detail::none) report.notes(r.notes);
@@ -254,36 +238,41 @@ void usableLine(Report& report, bool usable, const FormFactors& factors) {
   report.text("usable", "usable", condition);
 }
 
+void boundLine(Report& report, const std::optional<double>& bound) {
+  if (bound) {
+    report.number("error_bound_W_per_m2", "|B - B*| is at most", *bound, "W/m^2");
+  } else {
+    report.text("error_bound_W_per_m2", "|B - B*| is at most", "no certificate");
+  }
+}
+
+namespace {
+
+void solverLines(Report& report, const SolveSummary& s, const SolveOptions& options) {
+  // Older files do not have the solver that ran: it was the one asked for.
+  const Solver ran = s.solver == Solver::automatic ? options.solver : s.solver;
+  report.text("solver", "solver", nameOf(kSolverNames, ran));
+  report.text("solver_asked_for", "  asked for", nameOf(kSolverNames, options.solver));
+}
+
+}  // namespace
+
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
                        const PatchMesh& mesh, const SolveOptions& options, Detail detail) {
   const SolveSummary& s = solution.summary;
   if (detail == Detail::brief) report.line("", oneLine(s.message));
   {
     const Section section(report, detail, "solution", "Solution");
-    report.text("status", "status", nameOf(kSolveStatusNames, s.status));
-    // Older files do not have the solver that ran: it was the one asked for.
-    const Solver ran = s.solver == Solver::automatic ? options.solver : s.solver;
-    report.text("solver", "solver", nameOf(kSolverNames, ran));
-    report.text("solver_asked_for", "  asked for", nameOf(kSolverNames, options.solver));
-    report.count("iterations", "iterations", std::size_t(s.iterations));
-    report.count("rows", "rows multiplied", s.rows);
-    report.count("skipped_black_patches", "skipped: rows of black patches",
-                 s.skipped.black_patches);
-    report.count("skipped_dark_bands", "skipped: bands without light",
-                 std::size_t(s.skipped.dark_bands));
-    report.count("skipped_equal_bands", "skipped: bands equal to another",
-                 std::size_t(s.skipped.equal_bands));
-    report.number("residual", "residual (relative)", s.residual);
-    report.number("tolerance", "  asked for", options.tolerance);
-    if (s.error_bound) {
-      report.number("error_bound_W_per_m2", "|B - B*| is at most", *s.error_bound, "W/m^2");
-    } else {
-      report.text("error_bound_W_per_m2", "|B - B*| is at most", "no certificate");
-    }
-    report.series("residual_history", s.residual_history);
-    report.seconds("seconds", "time", s.seconds);
-    if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // empty if singular
-    report.text("message", "in words", oneLine(s.message));
+    FieldLines lines(report);
+    lines.after("solver", [&] { solverLines(report, s, options); });
+    lines.after("skipped", [&] { s.skipped.describe(lines, s.skipped); });
+    lines.after("residual", [&] { report.number("tolerance", "  asked for", options.tolerance); });
+    lines.after("error_bound", [&] { boundLine(report, s.error_bound); });
+    lines.after("residual_history", [&] { report.series("residual_history", s.residual_history); });
+    lines.after("energy", [&] {
+      if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // empty if singular
+    });
+    s.describe(lines, s);
     usableLine(report, s.usable(), factors);
   }
   warnOfBacks(report, s.energy, factors.backs_by_surface, mesh);
@@ -324,16 +313,16 @@ void gatherFigures(Report& report, const Gathered& gathered, const GatherOptions
   const Section section(report, detail, "gather", "Gather");
   report.text("at", "at", nameOf(kGatherAtNames, gathered.at));
   report.count("eyes", "eyes", gathered.area.size());
-  report.count("hemicubes_per_pass", "hemicubes a pass", s.hemicubes);
-  report.count("resolution", "pixels along an edge", std::size_t(options.resolution));
-  report.count("pass_count", "passes", s.passes.size());
-  report.seconds("seconds", "time", s.seconds);
-  report.bytes("bytes", "memory", s.bytes);
-  report.text("simd_target", "instruction set", s.simd_target);
-  report.yesNo("closed", "closed scene", s.closed);
-  if (!s.passes.empty()) energyFigures(report, s.passes.back().energy);
-  passTable(report, s.passes);
-  report.text("message", "in words", oneLine(s.message));
+  FieldLines lines(report);
+  lines.after("hemicubes", [&] {
+    report.count("resolution", "pixels along an edge", std::size_t(options.resolution));
+    report.count("pass_count", "passes", s.passes.size());
+  });
+  lines.after("closed", [&] {
+    if (!s.passes.empty()) energyFigures(report, s.passes.back().energy);
+    passTable(report, s.passes);
+  });
+  s.describe(lines, s);
   report.yesNo("usable", "usable", s.usable());
 }
 

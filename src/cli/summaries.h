@@ -27,6 +27,8 @@ void describeScene(Report& report, const Scene& scene);
 void summarizeMesh(Report& report, const MeshResult& result, Detail detail);
 void summarizeFactors(Report& report, const FormFactors& factors, const PatchMesh& mesh,
                       Detail detail);
+/// The bound of the error of B, if there is one.
+void boundLine(Report& report, const std::optional<double>& bound);
 /// "usable: yes", or what that depends on.
 void usableLine(Report& report, bool usable, const FormFactors& factors);
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,

@@ -92,8 +92,8 @@ class Passes {
   /// no bound.
   double relativeBound() const { return relative_bound_; }
 
-  HemicubeCounts counts() const {
-    HemicubeCounts counts = gpu_counts_;
+  HemicubeReport counts() const {
+    HemicubeReport counts = gpu_counts_;
     if (gpu_) counts += gpu_->counts();
     for (const Gatherer& worker : workers_) counts += worker.counts();
     return counts;
@@ -244,7 +244,7 @@ class Passes {
   std::vector<std::vector<SeenBack>> seen_backs_;  ///< L, during the first pass
   double relative_bound_ = HUGE_VAL;
   std::optional<GpuGatherer> gpu_;
-  HemicubeCounts gpu_counts_;  ///< of a device that gave up
+  HemicubeReport gpu_counts_;  ///< of a device that gave up
   tbb::enumerable_thread_specific<Gatherer> workers_;
 };
 
@@ -304,7 +304,7 @@ void runPasses(const GatherScene& scene, std::unique_ptr<GpuEye> eye, const Gath
   if (std::abs(worstImbalance(summary.passes.back())) > kMostImbalance) {
     summary.status = GatherStatus::unbalanced;
   }
-  const HemicubeCounts counts = passes.counts();
+  const HemicubeReport counts = passes.counts();
   summary.hemicubes = counts.hemicubes / summary.passes.size();
   summary.pixels = counts.pixels / summary.passes.size();
   summary.bytes = passes.bytes();

@@ -85,10 +85,6 @@ std::string GpuGatherer::pass(const std::function<void(std::size_t, const Seen&)
                                            view.fronts, view.backs, view.sky},
                                           view.items.subspan(patches)});
         });
-        for (std::size_t k = 0; k < rows.count; ++k) {
-          const std::size_t sky = (k + 1) * (rows.low.size() / rows.count) - 1;
-          counts_.sky_pixels += rows.weight(sky) > 0 ? 1 : 0;
-        }
         counts_.hemicubes += rows.count;
         counts_.pixels += rows.count * 3 * resolution * resolution;
         progress.advance(rows.count);

@@ -28,7 +28,7 @@ class GpuGatherer {
   /// there are no further passes.
   std::string pass(const std::function<void(std::size_t, const Seen&)>& take, Progress& progress);
 
-  const HemicubeCounts& counts() const { return counts_; }
+  const HemicubeReport& counts() const { return counts_; }
   const EyeDevice& device() const { return eye_->device(); }
   std::size_t bytes() const { return eye_->bytes(); }
 
@@ -37,7 +37,7 @@ class GpuGatherer {
   std::unique_ptr<GpuEye> eye_;
   std::string problem_;         ///< why no pass is possible; empty: passes are possible
   std::vector<Index> looking_;  ///< eyes
-  HemicubeCounts counts_;
+  HemicubeReport counts_;
 };
 
 }  // namespace radiosity

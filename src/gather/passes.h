@@ -74,7 +74,7 @@ class Gatherer {
   Received look(std::size_t eye);
   /// The share of the last view on each surface's back, by surface.
   std::span<const double> backsBySurface() const;
-  const HemicubeCounts& counts() const { return hemicube_.counts(); }
+  const HemicubeReport& counts() const { return hemicube_.counts(); }
   std::size_t bytes() const { return hemicube_.bytes() + (view_ ? view_->bytes() : 0); }
 
  private:

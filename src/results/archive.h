@@ -199,6 +199,7 @@ class FieldReader {
       if (std::isinf(values[k])) source_->failAt(name, k, values[k]);
     }
   }
+  bool hasAttribute(const char* name) const { return source_->hasAttribute(name); }
   /// The number of columns of a dataset.
   int columns(const char* name) const { return source_->columns(name); }
   void numbers(const char* name, std::vector<double>& values, std::size_t count) {

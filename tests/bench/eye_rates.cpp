@@ -108,7 +108,7 @@ class Eyes {
       for (std::size_t k = 0; k < count; ++k) from[k] = patches_[k % patches_.size()];
       lookFromPatches(
           *gpu_, rows_, from,
-          [&](std::size_t, const HemicubeView& view, const HemicubeCounts&) {
+          [&](std::size_t, const HemicubeView& view, const HemicubeReport&) {
             packed.local().pack(view, mesh_.size());
           },
           silent);

@@ -127,7 +127,7 @@ double rowRate(const PatchMesh& mesh, int resolution) {
   Progress silent;
   const double start = threadSeconds();
   const FormFactors f = computeFormFactors(mesh, optionsFor(resolution), silent);
-  return double(f.report.hemicubes) / (threadSeconds() - start);
+  return double(f.report.hemicube.hemicubes) / (threadSeconds() - start);
 }
 
 bool benchRate(const RateScene& scene) {

@@ -110,7 +110,7 @@ TEST(Hidden, CountsAddUp) {
   const PatchMesh mesh = platesInARoom(200, 0.15, 0.2, 0.8).build();
   TwoWays views(mesh, 64, rasterKernels(true));
   expectSameViews(views, 20);
-  const HemicubeCounts c = views.nearest.counts();
+  const HemicubeReport c = views.nearest.counts();
   EXPECT_GT(c.skipped_hidden, 0u);
   EXPECT_GT(c.skipped_horizon, 0u);
   EXPECT_EQ(5 * c.hemicubes * mesh.polygons.size(),

@@ -42,7 +42,7 @@ TEST(NearPairs, PlatesOfOnePatchHaveTheirClosedForm) {
     builder.grid("low", {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     builder.grid("high", {0, 0, gap}, {0, 1, 0}, {1, 0, 0});
     const FormFactors f = computeNear(builder.build(), FormFactorMethod::hemicube, true);
-    EXPECT_EQ(f.report.near_pairs, 2u);
+    EXPECT_EQ(f.report.hemicube.near_pairs, 2u);
     EXPECT_NEAR(f.matrix.at(0, 1), value, 1e-5 * value);
     EXPECT_NEAR(f.sky[0], 1 - value, 1e-5);
   }
@@ -56,7 +56,7 @@ TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
   // A single point is off by per cents next to an edge; the rest is occluded or less near.
   EXPECT_LT(difference(mesh, corrected, exact), 0.4 * difference(mesh, plain, exact));
   EXPECT_LE(corrected.report.largest_row_error, 1e-12);  // sums of at most 200 terms
-  EXPECT_EQ(corrected.report.capped, 0u);
+  EXPECT_EQ(corrected.report.hemicube.capped, 0u);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     EXPECT_NEAR(corrected.fronts[i], 1, 1e-12);
     for (std::size_t j = 0; j < mesh.size(); ++j) EXPECT_GE(corrected.matrix.at(i, j), 0);
@@ -66,7 +66,7 @@ TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
 TEST(NearPairs, AreOffByDefault) {
   const FormFactors f = computeNear(test::roomWithBlock(2).build(), FormFactorMethod::hemicube,
                                     FormFactorOptions().near_exact);
-  EXPECT_EQ(f.report.near_pairs, 0u);
+  EXPECT_EQ(f.report.hemicube.near_pairs, 0u);
 }
 
 }  // namespace

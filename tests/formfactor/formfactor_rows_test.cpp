@@ -82,7 +82,6 @@ TEST(Rows, NoPixelLeaksOutOfAClosedScene) {
     ASSERT_EQ(view.sky, 0.0) << k;
     ASSERT_NEAR(view.fronts + view.backs, 1.0, 1e-12);
   }
-  EXPECT_EQ(hemicube.counts().sky_pixels, 0u);
 }
 
 TEST(Rows, SymmetricEyesWithoutTurnsDoNotLeak) {
@@ -172,7 +171,7 @@ TEST(Rows, DegeneratePatchesHaveEmptyRows) {
   mesh.normal[5] = Vec3(0.0);
   const FormFactors f = test::computed(mesh, doublePrecision(32));
   EXPECT_EQ(f.report.empty_rows, 1u);
-  EXPECT_EQ(f.report.hemicubes, 23u);
+  EXPECT_EQ(f.report.hemicube.hemicubes, 23u);
   EXPECT_EQ(f.fronts[5], 0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     EXPECT_EQ(f.matrix.at(5, i), 0.0);

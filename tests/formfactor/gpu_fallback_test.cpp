@@ -137,8 +137,8 @@ TEST(GpuFallback, TheProcessorDrawsTheRestOfALostDevice) {
     scene.gpu = std::make_unique<FailingEye>(scene.rows, lives);
     const FormFactors seen =
         hemicubeFactors(mesh, scene, {}, RowMemory(), options, silent, nullptr, nullptr);
-    EXPECT_EQ(seen.report.hemicubes, expected.report.hemicubes);
-    EXPECT_EQ(seen.report.pixels, expected.report.pixels);
+    EXPECT_EQ(seen.report.hemicube.hemicubes, expected.report.hemicube.hemicubes);
+    EXPECT_EQ(seen.report.hemicube.pixels, expected.report.hemicube.pixels);
     EXPECT_TRUE(seen.report.closed);
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       for (std::size_t j = 0; j < mesh.size(); ++j) {

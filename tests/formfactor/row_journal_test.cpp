@@ -98,8 +98,8 @@ Bits bitsOf(const FormFactors& factors) {
   for (const std::size_t count :
        {exact.no_exchange, exact.unoccluded, exact.hidden, exact.occluded, exact.shaft_tests,
         exact.points, exact.contour, exact.rechecked, rays.rays, std::size_t(rays.rounds),
-        rays.short_rows, rays.leaked, report.hemicubes, report.pixels, report.rasterised_polygons,
-        report.near_pairs, report.matrix_bytes}) {
+        rays.short_rows, rays.leaked, report.hemicube.hemicubes, report.hemicube.pixels,
+        report.hemicube.rasterised_polygons, report.hemicube.near_pairs, report.matrix_bytes}) {
     bits.push_back(count);
   }
   for (const double figure : {report.error_figure, report.largest_row_error,

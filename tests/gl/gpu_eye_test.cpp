@@ -278,7 +278,7 @@ TEST(GpuEye, MakesRoomForTrianglesOnManyFaces) {
   std::vector<std::vector<double>> items(patches.size());
   const std::string problem = lookFromPatches(
       *gpu, rows, patches,
-      [&](std::size_t patch, const HemicubeView& view, const HemicubeCounts&) {
+      [&](std::size_t patch, const HemicubeView& view, const HemicubeReport&) {
         items[patch].assign(view.items.begin(), view.items.end());
       },
       silent);
@@ -491,13 +491,13 @@ TEST(GpuEye, FormFactorsEqualTheProcessorsWithinAFewPixels) {
   const FormFactors gl = computeFormFactors(mesh, options, silent);
   EXPECT_TRUE(gl.report.closed);
   EXPECT_LE(gl.report.largest_row_error, 1e-12);
-  EXPECT_EQ(gl.report.hemicubes, cpu.report.hemicubes);
-  EXPECT_EQ(gl.report.pixels, cpu.report.pixels);
-  EXPECT_EQ(gl.report.skipped_own_plane, cpu.report.skipped_own_plane);
-  EXPECT_EQ(gl.report.skipped_horizon, cpu.report.skipped_horizon);
-  EXPECT_EQ(gl.report.skipped_facing_away, cpu.report.skipped_facing_away);
-  EXPECT_EQ(gl.report.skipped_face, cpu.report.skipped_face);
-  EXPECT_EQ(gl.report.rasterised_polygons, cpu.report.rasterised_polygons);
+  EXPECT_EQ(gl.report.hemicube.hemicubes, cpu.report.hemicube.hemicubes);
+  EXPECT_EQ(gl.report.hemicube.pixels, cpu.report.hemicube.pixels);
+  EXPECT_EQ(gl.report.hemicube.skipped_own_plane, cpu.report.hemicube.skipped_own_plane);
+  EXPECT_EQ(gl.report.hemicube.skipped_horizon, cpu.report.hemicube.skipped_horizon);
+  EXPECT_EQ(gl.report.hemicube.skipped_facing_away, cpu.report.hemicube.skipped_facing_away);
+  EXPECT_EQ(gl.report.hemicube.skipped_face, cpu.report.hemicube.skipped_face);
+  EXPECT_EQ(gl.report.hemicube.rasterised_polygons, cpu.report.hemicube.rasterised_polygons);
   double row =
       0;  // two pixels of the top face's middle, 3e-4 each, change hands in a row, not more
   for (std::size_t i = 0; i < mesh.size(); ++i) {

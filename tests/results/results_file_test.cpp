@@ -210,6 +210,9 @@ class Edit {
     H5Gclose(group);
   }
   void remove(const char* name) { EXPECT_GE(H5Ldelete(file_, name, H5P_DEFAULT), 0); }
+  void removeAttribute(const char* object, const char* name) {
+    EXPECT_GE(H5Adelete_by_name(file_, object, name, H5P_DEFAULT), 0);
+  }
   /// Zeros.
   void rows(const char* name, hsize_t count, hsize_t columns) {
     const std::array<hsize_t, 2> extent = {count, columns};
@@ -393,6 +396,67 @@ TEST_F(ResultsFile, NamesElementsThatAnotherProgramChanged) {
   alone.solution = {};
   write(alone);
   expectInputError("/elements comes without mesh and solution");
+}
+
+/// Where the described fields of a report lie.
+class Places {
+ public:
+  std::vector<std::pair<const char*, std::size_t>> found;
+  void operator()(const ReportLine& /*line*/, const auto& field) { add(field); }
+  void part(const char* /*name*/, const auto& field) { add(field); }
+  void table(const char* /*name*/, const auto& field, const auto& /*columns*/) { add(field); }
+  void notes(const auto& field) { add(field); }
+  void add(const auto& field) {
+    found.emplace_back(reinterpret_cast<const char*>(&field), sizeof field);
+  }
+};
+
+/// `beside`: fields that the file has elsewhere.
+template <class Report, class... Beside>
+void expectNoFieldIsLeftOut(Beside Report::*... beside) {
+  const Report report;
+  Places places;
+  Report::describe(places, report);
+  (places.add(report.*beside), ...);
+  const auto* end = reinterpret_cast<const char*>(&report);
+  places.found.emplace_back(end + sizeof report, 0);
+  std::sort(places.found.begin(), places.found.end());
+  for (const auto& [begin, size] : places.found) {
+    EXPECT_LT(begin - end, std::ptrdiff_t(sizeof(double)));
+    end = begin + size;
+  }
+}
+
+TEST_F(ResultsFile, ReportsDescribeEveryFieldOfEightBytes) {
+  expectNoFieldIsLeftOut<MeshReport>();
+  expectNoFieldIsLeftOut<ClosureReport>();
+  expectNoFieldIsLeftOut<ExactReport>();
+  expectNoFieldIsLeftOut<RayReport>();
+  expectNoFieldIsLeftOut<HemicubeReport>();
+  expectNoFieldIsLeftOut<FormFactorReport>(&FormFactorReport::hemicube);
+  expectNoFieldIsLeftOut<EnergyAccount>();
+  expectNoFieldIsLeftOut<SolveSkips>();
+  expectNoFieldIsLeftOut<SolveSummary>();
+  expectNoFieldIsLeftOut<ElementReport>();
+  expectNoFieldIsLeftOut<GatherPass>();
+  expectNoFieldIsLeftOut<GatherSummary>(&GatherSummary::passes);
+  expectNoFieldIsLeftOut<HeatBalance>();
+  expectNoFieldIsLeftOut<HeatSummary>(&HeatSummary::balance);
+}
+
+TEST_F(ResultsFile, FiguresThatAReportLacksAreAsIfNothingWasCounted) {
+  write(sample::results(3, Precision::single_precision));
+  {
+    Edit edit(file());
+    edit.removeAttribute("/form_factors/report", "pixels");
+    edit.removeAttribute("/form_factors/report/exact", "shaft_tests");
+    edit.removeAttribute("/solution/summary", "solver");
+  }
+  const Results read = readResults(file());
+  EXPECT_EQ(read.factors->report.hemicube.pixels, 0u);
+  EXPECT_GT(read.factors->report.hemicube.skipped_hidden, 0u);
+  EXPECT_EQ(read.factors->report.exact.shaft_tests, 0u);
+  EXPECT_EQ(read.solution->summary.solver, Solver::automatic);
 }
 
 TEST_F(ResultsFile, TruncationIsAnInputError) {

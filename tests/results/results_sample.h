@@ -12,6 +12,8 @@
 
 #include "elements/element_parts.h"
 #include "elements/element_roots.h"
+#include "radiosity/names.h"
+#include "radiosity/report_line.h"
 #include "radiosity/results.h"
 
 namespace radiosity::sample {
@@ -95,29 +97,46 @@ inline PatchMesh mesh(Index side) {
   return m;
 }
 
+/// Fills the figures of a report, each differently.
+class Filled {
+ public:
+  Filled(double first, int bands) : next_(first), bands_(bands) {}
+  template <class T>
+  void operator()(const ReportLine& line, T& value) {
+    next_ += 1.25;
+    if constexpr (std::is_enum_v<T>) {
+      value = tableOf(value).back().first;
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      value = line.name;
+    } else if constexpr (std::is_same_v<T, bool>) {
+      value = true;
+    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+      value.assign(std::size_t(bands_), next_);
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      value = T(next_);
+    } else {
+      (*this)(line, value.emplace());
+    }
+  }
+  void part(const char* /*name*/, auto& report) { report.describe(*this, report); }
+  void table(const char* /*name*/, const auto& /*records*/, const auto& /*columns*/) {}
+  void notes(std::vector<Note>& notes) { notes = {{Severity::warning, "left wall: by 3.2 mm"}}; }
+
+ private:
+  double next_;
+  int bands_;
+};
+
+template <class Report>
+void fill(Report& report, double first, int bands = 3) {
+  Filled fields(first, bands);
+  Report::describe(fields, report);
+}
+
 inline MeshReport meshReport() {
   MeshReport r;
+  fill(r, 0);
   r.surfaces = {{"box/red", 1, 2, 3, 4, 5}, {"/white", 0.1, 0.2, 0.3, 0.4, 0.5}};
-  r.welded_vertices = 1;
-  r.degenerate_faces = 2;
-  r.duplicate_faces = 3;
-  r.nonplanar_faces = 4;
-  r.largest_deviation = 0.0032;
-  r.cuts = 5;
-  r.split_edges = 6;
-  r.hidden_sides = 7;
-  r.nonmanifold_edges = 8;
-  r.polygons = 9;
-  r.triangles = 10;
-  r.quads = 11;
-  r.t_junctions = 12;
-  r.crossings = 13;
-  r.smallest_angle = 20.5;
-  r.smallest_angle_surface = "box/red";
-  r.longest_edge = 1.25;
-  r.clusters = 14;
-  r.widest_cone = 57.5;
-  r.notes = {{Severity::warning, "left wall: not planar by 3.2 mm"}};
   return r;
 }
 
@@ -159,40 +178,6 @@ inline ExchangeMatrix matrix(const PatchMesh& m, Precision precision) {
   return f;
 }
 
-inline ExactReport exactReport() {
-  ExactReport e;
-  e.elements = 20;
-  e.black_elements = 21;
-  e.facets = 22;
-  e.occluders = 23;
-  e.solids = 24;
-  e.skipped_hull = 25;
-  e.no_exchange = 26;
-  e.unoccluded = 27;
-  e.hidden = 28;
-  e.occluded = 29;
-  e.facet_pairs = 30;
-  e.facet_pairs_no_exchange = 31;
-  e.facet_pairs_unoccluded = 32;
-  e.shaft_tests = 33;
-  e.contour = 34;
-  e.lambert = 35;
-  e.product = 36;
-  e.clipped = 37;
-  e.points = 38;
-  e.subdivided = 39;
-  e.evaluated_again = 47;
-  e.rechecked = 41;
-  e.recheck_ratio = 42.5;
-  e.seconds_prepare = 43.5;
-  e.seconds_visibility = 44.5;
-  e.seconds_unoccluded = 45.5;
-  e.seconds_occluded = 46.5;
-  e.seconds_assembly = 47.5;
-  e.seconds_finish = 48.5;
-  return e;
-}
-
 /// The same kinds of rows, reciprocal, stored in an order of its own.
 inline ExchangeMatrix symmetricMatrix(const PatchMesh& m, Precision precision) {
   const std::size_t n = m.size();
@@ -224,37 +209,8 @@ inline FormFactors factors(const PatchMesh& m, Precision precision) {
   }
   f.backs_by_surface = {0.001, 0.25};
   f.method = FormFactorMethod::hemicube;
-  FormFactorReport& r = f.report;
-  r.hemicubes = 1;
-  r.empty_rows = 2;
-  r.polygons = 3;
-  r.rasterised_polygons = 4;
-  r.skipped_own_plane = 5;
-  r.skipped_horizon = 6;
-  r.skipped_facing_away = 7;
-  r.skipped_face = 8;
-  r.skipped_hidden = 14;
-  r.pixels = 9000000000;
-  r.simd_target = "AVX3";
-  r.seconds = 0.123;
-  r.matrix_bytes = 10;
-  r.estimated_bytes = 11;
-  r.seconds_plan = 0.75;
-  r.estimated_seconds = 12.5;
-  r.reciprocity_residual = 0.0885;
-  r.largest_row_error = 1e-15;
-  r.closed = true;
-  r.symmetrized = true;
-  r.closure = {0.1, 0.03, 1e-13, 0.01, 0.02, 12, true, 13, 14, 15};
-  r.method_reason = "clutter";
-  r.closure_enforced = true;
-  r.near_pairs = 12;
-  r.capped = 13;
-  r.exact_rows = 67;
-  r.error_figure = 1.25e-4;
-  r.exact = exactReport();
-  r.rays = {61, 62, 64, 65, 66, 0.66, 0.67, 0.68, 0.69, 0.7, 0.71};
-  r.notes = {{Severity::loud, "door: seen from behind: flipped?"}};
+  fill(f.report, 100);
+  fill(f.report.hemicube, 9e9);
   return f;
 }
 
@@ -265,19 +221,7 @@ inline Solution solution(std::size_t n, int bands) {
     s.radiosity.push_back(std::sqrt(double(k)));
     s.irradiance.push_back(std::cbrt(double(k)) * 1e-200);
   }
-  SolveSummary& r = s.summary;
-  r.status = SolveStatus::no_convergence;
-  r.solver = Solver::gmres;
-  r.iterations = 42;
-  r.rows = 43;
-  r.skipped = {44, 1, 2};
-  r.residual = 1.0 / 3;
-  r.error_bound = 2.5;
-  const auto filled = [bands](double v) { return std::vector<double>(std::size_t(bands), v); };
-  r.energy = {filled(1), filled(0.5), filled(2), filled(3), filled(4), filled(-1e-17)};
-  r.seconds = 7.5;
-  r.residual_history = {1, 0.5, 0.25};
-  r.message = "not converged after 42 sweeps";
+  fill(s.summary, 200, bands);
   return s;
 }
 
@@ -332,23 +276,7 @@ inline Elements elements(const PatchMesh& mesh, int bands) {
   e.roots = elementRoots(mesh);
   e.direct = elementField(e.roots, bands, 1e-200);
   e.indirect = elementField(e.roots, bands, 1.0 / 3);
-  ElementReport& r = e.report;
-  r.direct = DirectLight::partly;
-  r.roots = 71;
-  r.as_solved = 70;
-  r.emitters = 72;
-  r.direct_vertices = 73;
-  r.direct_by_rays = 74;
-  r.indirect_vertices = 75;
-  r.uniform_vertices = 1e12;
-  r.unrefined = 76;
-  r.rays = 7e10;
-  r.rays_a_vertex = 512;
-  r.edge = 0.77;
-  r.interpolation_error = 0.78;
-  r.ray_error = 0.79;
-  r.seconds_direct = 8.1;
-  r.seconds_indirect = 8.2;
+  fill(e.report, 300);
   return e;
 }
 
@@ -373,20 +301,10 @@ inline Gathered gathered(const PatchMesh& mesh, GatherAt at, int bands) {
   if (at == GatherAt::vertices) {
     for (std::size_t k = 0; k < eyes; ++k) g.eye_of_corner.push_back(Index(eyes - 1 - k));
   }
-  const auto filled = [bands](double v) { return std::vector<double>(std::size_t(bands), v); };
-  const EnergyAccount energy{filled(1), filled(0.5), filled(2),
-                             filled(3), filled(4),   filled(-1e-17)};
-  g.summary.status = GatherStatus::pass_limit;
-  g.summary.passes = {{0.5, 1.0 / 3, std::nullopt, energy, filled(5)},
-                      {0.25, 1.0 / 7, 2.5, energy, filled(6)}};
-  g.summary.hemicubes = eyes;
-  g.summary.pixels = 12345678901;
-  g.summary.closed = true;
-  g.summary.bytes = 4096;
-  g.summary.simd_target = "AVX2";
-  g.summary.seconds = 1.25;
-  g.summary.message = "stopped after 2 passes";
-  g.summary.notes = {{Severity::info, "hemicubes drawn by llvmpipe"}};
+  fill(g.summary, 1e10);
+  g.summary.passes.resize(2);
+  for (GatherPass& pass : g.summary.passes) fill(pass, 400, bands);
+  g.summary.passes[0].bound.reset();
   return g;
 }
 
@@ -402,8 +320,8 @@ inline HeatSolution heat(const PatchMesh& mesh, int bands) {
     h.convection.push_back(1.0 / (double(k) + 3));
     h.temperature.push_back(300 + 1.0 / (double(k) + 1));
   }
-  h.summary = {HeatStatus::no_convergence, 5,   12345678901,    1e-3, 2e-4, 7,
-               {1, 2, 3, 4, 5, 6},         0.5, "not converged"};
+  fill(h.summary, 500);
+  fill(h.summary.balance, 600);
   h.conditions = {
       "", "surface,emissivity\r\n# ä\n*,0.5\n", {"lamp.temperature=900", "*.flux=0"}, {"all=*"}};
   return h;
@@ -437,8 +355,51 @@ inline Results results(Index side, Precision precision, int bands = 3) {
   return r;
 }
 
-// Every struct as the tuple of its members. A structured binding must name all of them: a member
-// added to a struct stops this from compiling until file and comparison know it.
+/// The figures of a report, to the bit.
+class Figures {
+ public:
+  bool operator==(const Figures&) const = default;
+  template <class T>
+  void operator()(const ReportLine& line, const T& value) {
+    if constexpr (std::is_same_v<T, std::string>) {
+      all_.push_back(value);
+    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+      all_.emplace_back(reinterpret_cast<const char*>(value.data()), value.size() * sizeof(double));
+    } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+      all_.emplace_back(reinterpret_cast<const char*>(&value), sizeof value);
+    } else {
+      all_.emplace_back(value ? "there" : "missing");
+      if (value) (*this)(line, *value);
+    }
+  }
+  void part(const char* /*name*/, const auto& report) { report.describe(*this, report); }
+  void table(const char* /*name*/, const auto& records, const auto& columns) {
+    const auto column = [&](const char* name, auto member, const char* /*unit*/ = "") {
+      for (const auto& record : records) (*this)(ReportLine{name}, record.*member);
+    };
+    columns(column);
+  }
+  void notes(const std::vector<Note>& notes) {
+    for (const Note& note : notes) {
+      (*this)(ReportLine{"severity"}, note.severity);
+      all_.push_back(note.text);
+    }
+  }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+template <class Report>
+Figures figures(const Report& report) {
+  Figures list;
+  Report::describe(list, report);
+  return list;
+}
+
+// Every struct as the tuple of its members, reports by what they describe. A structured binding
+// must name all members: one added to a struct stops this from compiling until file and comparison
+// know it.
 inline auto members(const Note& s) {
   const auto& [a, b] = s;
   return std::tie(a, b);
@@ -477,37 +438,12 @@ inline auto members(const PatchMesh& s) {
   static_cast<void>(enclosures);
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
 }
-inline auto members(const SurfaceAreas& s) {
-  const auto& [a, b, c, d, e, f] = s;
-  return std::tie(a, b, c, d, e, f);
-}
-inline auto members(const MeshReport& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v);
-}
 inline auto members(const MeshResult& s) {
   const auto& [a, b] = s;
   return std::tie(a, b);
 }
-inline auto members(const ClosureReport& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
-}
-inline auto members(const ExactReport& s) {
-  const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
-               v19, v20, v21, v22, v23, v24, v25, v26, v27, v28] = s;
-  return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
-                  v18, v19, v20, v21, v22, v23, v24, v25, v26, v27, v28);
-}
-inline auto members(const RayReport& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
-}
 inline auto members(const FormFactorReport& s) {
-  const auto& [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17, v18,
-               v19, v20, v21, v22, v23, v24, v25, v26, v27, v28, v29] = s;
-  return std::tie(v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15, v16, v17,
-                  v18, v19, v20, v21, v22, v23, v24, v25, v26, v27, v28, v29);
+  return std::make_tuple(figures(s), figures(s.hemicube));
 }
 inline auto members(const FormFactors& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;
@@ -517,30 +453,11 @@ inline auto members(const PatchMaterials& s) {
   const auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
 }
-inline auto members(const EnergyAccount& s) {
-  const auto& [a, b, c, d, e, f] = s;
-  return std::tie(a, b, c, d, e, f);
-}
-inline auto members(const SolveSkips& s) {
-  const auto& [a, b, c] = s;
-  return std::tie(a, b, c);
-}
-inline auto members(const SolveSummary& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
-}
 inline auto members(const Solution& s) {
   const auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
 }
-inline auto members(const GatherPass& s) {
-  const auto& [a, b, c, d, e] = s;
-  return std::tie(a, b, c, d, e);
-}
-inline auto members(const GatherSummary& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
-}
+inline auto members(const GatherSummary& s) { return std::make_tuple(figures(s), s.passes); }
 inline auto members(const ElementRoots& s) {
   const auto& [a, b, c] = s;
   return std::tie(a, b, c);
@@ -553,10 +470,6 @@ inline auto members(const ElementField& s) {
   const auto& [a, b, c, d] = s;
   return std::tie(a, b, c, d);
 }
-inline auto members(const ElementReport& s) {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
-}
 inline auto members(const Elements& s) {
   const auto& [a, b, c, d, e] = s;
   return std::tie(a, b, c, d, e);
@@ -565,13 +478,8 @@ inline auto members(const Gathered& s) {
   const auto& [a, b, c, d, e, f, g, h, i, j, k] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k);
 }
-inline auto members(const HeatBalance& s) {
-  const auto& [a, b, c, d, e, f] = s;
-  return std::tie(a, b, c, d, e, f);
-}
 inline auto members(const HeatSummary& s) {
-  const auto& [a, b, c, d, e, f, g, h, i] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i);
+  return std::make_tuple(figures(s), figures(s.balance));
 }
 inline auto members(const ConditionText& s) {
   // Its source is not kept in the file.
@@ -634,6 +542,8 @@ bool same(const T& a, const T& b) {
     return [&]<std::size_t... K>(std::index_sequence<K...>) {
       return (same(std::get<K>(left), std::get<K>(right)) && ...);
     }(std::make_index_sequence<std::tuple_size_v<decltype(left)>>{});
+  } else if constexpr (requires(Figures list) { T::describe(list, a); }) {
+    return figures(a) == figures(b);
   } else {
     return a == b;
   }

@@ -31,7 +31,7 @@ struct GpuView {
 };
 static_assert(sizeof(GpuView) == 104);
 
-/// Polygons drawn and skipped by some hemicubes; as HemicubeCounts.
+/// Polygons drawn and skipped by some hemicubes; as HemicubeReport.
 struct GpuCounts {
   std::uint32_t own_plane, horizon, facing_away, face, rasterised;
 };

@@ -35,8 +35,8 @@ const HemicubeView& GpuRowReader::read(const GpuRows& rows, std::size_t k, std::
   return view_;
 }
 
-HemicubeCounts polygonCounts(const GpuCounts& counts) {
-  HemicubeCounts polygons;
+HemicubeReport polygonCounts(const GpuCounts& counts) {
+  HemicubeReport polygons;
   polygons.rasterised_polygons = counts.rasterised;
   polygons.skipped_own_plane = counts.own_plane;
   polygons.skipped_horizon = counts.horizon;
@@ -47,7 +47,7 @@ HemicubeCounts polygonCounts(const GpuCounts& counts) {
 
 std::string lookFromPatches(
     GpuEye& eye, const RowBuilder& rows, std::span<const Index> patches,
-    const std::function<void(std::size_t, const HemicubeView&, const HemicubeCounts&)>& store,
+    const std::function<void(std::size_t, const HemicubeView&, const HemicubeReport&)>& store,
     Progress& progress) {
   const auto resolution = std::size_t(rows.weights().resolution());
   std::vector<std::uint8_t> hidden;
@@ -61,10 +61,9 @@ std::string lookFromPatches(
       [&](const GpuRows& seen) {
         parallelFor(seen.count, 1, [&](std::size_t k) {
           const HemicubeView& view = readers.local().read(seen, k, rows.scene().patches);
-          HemicubeCounts counts = k == 0 ? polygonCounts(seen.counts) : HemicubeCounts();
+          HemicubeReport counts = k == 0 ? polygonCounts(seen.counts) : HemicubeReport();
           counts.hemicubes = 1;
           counts.pixels = 3 * resolution * resolution;
-          counts.sky_pixels = view.sky > 0 ? 1 : 0;
           store(patches[seen.first + k], view, counts);
         });
         progress.advance(seen.count);

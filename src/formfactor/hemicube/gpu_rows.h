@@ -29,15 +29,15 @@ class GpuRowReader {
 };
 
 /// Polygons that some hemicubes drew and skipped; hemicubes and pixels stay 0.
-HemicubeCounts polygonCounts(const GpuCounts& counts);
+HemicubeReport polygonCounts(const GpuCounts& counts);
 
 /// Looks from `patches` (not empty ones) and calls store(patch, view, counts) for each, on all
-/// threads. The first patch of a batch gets the counts of polygons of all of it;
-/// HemicubeCounts::sky_pixels is 1 for any number. Advances `progress` by a step a patch and stops
-/// if that is cancelled. Returns why the device gave up, if it did: some were then not called.
+/// threads. The first patch of a batch gets the counts of polygons of all of it. Advances
+/// `progress` by a step a patch and stops if that is cancelled. Returns why the device gave up, if
+/// it did: some were then not called.
 std::string lookFromPatches(
     GpuEye& eye, const RowBuilder& rows, std::span<const Index> patches,
-    const std::function<void(std::size_t, const HemicubeView&, const HemicubeCounts&)>& store,
+    const std::function<void(std::size_t, const HemicubeView&, const HemicubeReport&)>& store,
     Progress& progress);
 
 }  // namespace radiosity

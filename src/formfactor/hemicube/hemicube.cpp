@@ -20,19 +20,6 @@ int roundUp(int x, int multiple) { return (x + multiple - 1) / multiple * multip
 
 }  // namespace
 
-HemicubeCounts& HemicubeCounts::operator+=(const HemicubeCounts& other) {
-  hemicubes += other.hemicubes;
-  rasterised_polygons += other.rasterised_polygons;
-  skipped_own_plane += other.skipped_own_plane;
-  skipped_horizon += other.skipped_horizon;
-  skipped_facing_away += other.skipped_facing_away;
-  skipped_face += other.skipped_face;
-  skipped_hidden += other.skipped_hidden;
-  pixels += other.pixels;
-  sky_pixels += other.sky_pixels;
-  return *this;
-}
-
 Hemicube::Hemicube(const ViewScene& scene, const DeltaFormFactors& weights,
                    const RasterKernels& kernels, const PolygonTree* tree)
     : scene_(scene),
@@ -170,7 +157,6 @@ void Hemicube::sumRow(const FaceGeometry& face, int y, const std::uint32_t* row,
     const double weight = weights[end] - weights[begin];
     if (row[begin] == kSky) {
       view_.sky += weight;
-      counts_.sky_pixels += std::size_t(end - begin);
       append(begin, scene_.skyCell());
       continue;
     }

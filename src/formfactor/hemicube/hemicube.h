@@ -36,22 +36,9 @@
 #include "formfactor/hemicube/raster_kernels.h"
 #include "formfactor/hemicube/scan_conversion.h"
 #include "formfactor/view_scene.h"
+#include "radiosity/form_factors.h"
 
 namespace radiosity {
-
-/// Counts of polygons drawn and skipped, summed over hemicubes. See FormFactorReport.
-struct HemicubeCounts {
-  std::size_t hemicubes = 0;
-  std::size_t rasterised_polygons = 0;
-  std::size_t skipped_own_plane = 0;
-  std::size_t skipped_horizon = 0;
-  std::size_t skipped_facing_away = 0;
-  std::size_t skipped_face = 0;
-  std::size_t skipped_hidden = 0;
-  std::size_t pixels = 0;
-  std::size_t sky_pixels = 0;
-  HemicubeCounts& operator+=(const HemicubeCounts& other);
-};
 
 /// Form factors from an eye to every item, and their sums by kind, which add up to 1.
 struct HemicubeView {
@@ -97,9 +84,9 @@ class Hemicube {
   const HemicubeView& look(const EyeFrame& frame, Index own, const std::uint8_t* hidden,
                            RunVisitor* runs = nullptr);
 
-  const HemicubeCounts& counts() const { return counts_; }
+  const HemicubeReport& counts() const { return counts_; }
   /// Returns the counts and sets them to 0.
-  HemicubeCounts takeCounts() { return std::exchange(counts_, {}); }
+  HemicubeReport takeCounts() { return std::exchange(counts_, {}); }
 
   /// One face of the last view, for tests and comparisons: positions in scene.polygons, or kNone;
   /// rows(face) rows of `resolution` pixels.
@@ -232,7 +219,7 @@ class Hemicube {
   Index own_ = kNone;
   const std::uint8_t* hidden_ = nullptr;
   HemicubeView view_;
-  HemicubeCounts counts_;
+  HemicubeReport counts_;
   std::vector<Vec3> eye_corners_;  ///< of the candidates, in the eye's frame
   std::vector<Candidate> candidates_;
   std::array<std::vector<Drawn>, kFaces> drawn_;

@@ -90,7 +90,7 @@ std::optional<Sample> sampleByGpu(const std::vector<Index>& patches, std::size_t
   }
   Progress silent;
   std::atomic<std::size_t> entries = 0;
-  const auto count = [&](std::size_t patch, const HemicubeView& view, const HemicubeCounts&) {
+  const auto count = [&](std::size_t patch, const HemicubeView& view, const HemicubeReport&) {
     PackedRow row;
     row.pack(view, n);
     entries += row.columns.size();

@@ -36,7 +36,7 @@ constexpr double kMostLeaks = 1e-3;
 /// Memory in which a thread stores rows, and their counts.
 struct RowStore {
   PackedRow row;
-  HemicubeRowCounts counts;
+  HemicubeReport counts;
 };
 
 /// Memory in which a thread makes rows.
@@ -61,7 +61,7 @@ struct Rows {
 /// leaks: it goes without.
 void storeRow(std::size_t i, const HemicubeView& view, bool closed, const NearPairs* near_pairs,
               PackedRow& row, FormFactors& result, std::vector<SeenBack>& seen_backs,
-              HemicubeRowCounts& counts) {
+              HemicubeReport& counts) {
   const std::size_t n = result.fronts.size();
   row.pack(view, n);
   const double sky = closed ? 0.0 : view.sky;
@@ -149,14 +149,12 @@ std::size_t rowsThere(const RowBuilder& rows, std::size_t n, RowJournal* journal
   return n - all + found;
 }
 
-/// Stores row i and keeps it. `drawn`: the counts of its look.
-void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, const HemicubeCounts& drawn,
+/// Stores row i and keeps it. `counts`: of its look.
+void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, HemicubeReport counts,
                RowStore& store) {
-  HemicubeRowCounts counts;
   const NearPairs* near_pairs = rows.scene.near_pairs ? &*rows.scene.near_pairs : nullptr;
   const bool closed = rows.closed.keeps(i, view.sky, kMostLeaks);
   storeRow(i, view, closed, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
-  counts.drawn = drawn;
   if (rows.journal != nullptr) keepRow(*rows.journal, i, rows.result, rows.seen_backs[i], counts);
   replaceKnown(rows, i, store.row);
   store.counts += counts;
@@ -170,7 +168,7 @@ struct RowRange {
 };
 
 /// Takes the rows that need not be made: empty ones and those in the journal.
-HemicubeRowCounts takeRows(Rows& rows, RowRange range, const Progress& progress) {
+HemicubeReport takeRows(Rows& rows, RowRange range, const Progress& progress) {
   tbb::enumerable_thread_specific<RowStore> stores;
   parallelFor(range.size(), 1, [&](std::size_t k) {
     if (progress.cancelled()) return;
@@ -183,13 +181,13 @@ HemicubeRowCounts takeRows(Rows& rows, RowRange range, const Progress& progress)
     rows.closed.keeps(i, rows.result.sky[i], 0);
     replaceKnown(rows, i, store.row);
   });
-  HemicubeRowCounts all;
+  HemicubeReport all;
   for (const RowStore& store : stores) all += store.counts;
   return all;
 }
 
 /// Makes rows by the GPU's eye. If that gives up, a note says why; other rows are still to be made.
-HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
+HemicubeReport makeRowsByGpu(Rows& rows, Progress& progress) {
   std::vector<Index> patches;
   for (std::size_t i = 0; i < rows.made.size(); ++i) {
     if (rows.made[i] == 0) patches.push_back(Index(i));
@@ -197,8 +195,8 @@ HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
   tbb::enumerable_thread_specific<RowStore> stores;
   const std::string problem = lookFromPatches(
       *rows.scene.gpu, rows.scene.rows, patches,
-      [&](std::size_t i, const HemicubeView& view, const HemicubeCounts& drawn) {
-        finishRow(rows, i, view, drawn, stores.local());
+      [&](std::size_t i, const HemicubeView& view, const HemicubeReport& counts) {
+        finishRow(rows, i, view, counts, stores.local());
       },
       progress);
   const std::string& name = rows.scene.gpu->device().name;
@@ -211,7 +209,7 @@ HemicubeRowCounts makeRowsByGpu(Rows& rows, Progress& progress) {
         {Severity::warning, fmt::format("{}: {}; {} {} hemicubes were drawn by the processor", name,
                                         problem, drew ? "the other" : "all", countText(left))});
   }
-  HemicubeRowCounts all;
+  HemicubeReport all;
   for (const RowStore& store : stores) all += store.counts;
   return all;
 }
@@ -235,20 +233,19 @@ std::size_t makeRows(Rows& rows, RowRange range, Workers& workers, Progress& pro
 }
 
 /// The counts of all workers since the last call.
-HemicubeRowCounts takeCounts(Workers& workers) {
-  HemicubeRowCounts all;
+HemicubeReport takeCounts(Workers& workers) {
+  HemicubeReport all;
   for (Worker& worker : workers) all += std::exchange(worker.store.counts, {});
   return all;
 }
 
 /// Makes rows in blocks by all processes; process 0 gets accounts and counts of all of them.
-HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
-                            Progress& progress) {
+HemicubeReport shareRows(Processes& processes, Rows& rows, Workers& workers, Progress& progress) {
   constexpr std::size_t kBlocksAProcess = 32;
   constexpr std::size_t kMostBlocksAProcess = 40;  // rows stay in the process that made them
   const std::size_t n = rows.made.size();
   FormFactors& result = rows.result;
-  HemicubeRowCounts all;
+  HemicubeReport all;
   BlockWork work;
   work.blocks = std::min(n, kBlocksAProcess * std::size_t(processes.size()));
   work.most_a_process = kMostBlocksAProcess;
@@ -257,7 +254,7 @@ HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
   };
   work.run = [&](std::size_t block) {
     const RowRange range = rangeOf(block);
-    HemicubeRowCounts counts = takeRows(rows, range, progress);
+    HemicubeReport counts = takeRows(rows, range, progress);
     const std::size_t made = makeRows(rows, range, workers, progress);
     counts += takeCounts(workers);
     ByteWriter bytes;
@@ -275,7 +272,7 @@ HemicubeRowCounts shareRows(Processes& processes, Rows& rows, Workers& workers,
     ByteReader bytes(from);
     const auto made = bytes.get<std::size_t>();
     if (process != 0) progress.advance(made);
-    all += bytes.get<HemicubeRowCounts>();
+    all += bytes.get<HemicubeReport>();
     const RowRange range = rangeOf(block);
     for (std::size_t i = range.first; i < range.last; ++i) {
       result.fronts[i] = bytes.get<double>();
@@ -306,15 +303,14 @@ KnownEntries knownByPatch(std::vector<KnownRow> rows, std::size_t patches, Proce
   return {std::move(rows), position};
 }
 
-HemicubeRowCounts fillRows(const HemicubeScene& scene, const KnownEntries& known,
-                           ClosedRows& closed, RowJournal* journal, Processes* processes,
-                           FormFactors& result, std::vector<std::vector<SeenBack>>& seen_backs,
-                           Progress& progress) {
+HemicubeReport fillRows(const HemicubeScene& scene, const KnownEntries& known, ClosedRows& closed,
+                        RowJournal* journal, Processes* processes, FormFactors& result,
+                        std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
   const std::size_t n = result.fronts.size();
   Rows rows{scene, known, closed, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
   Workers workers([&] { return Worker{scene.rows.makeHemicube(), {}, {}}; });
   progress.begin("form factors", n, "rows", rowsThere(scene.rows, n, journal));
-  HemicubeRowCounts counts;
+  HemicubeReport counts;
   if (processes != nullptr) {
     counts = shareRows(*processes, rows, workers, progress);
   } else {
@@ -326,21 +322,6 @@ HemicubeRowCounts fillRows(const HemicubeScene& scene, const KnownEntries& known
   progress.check();
   progress.end();
   return counts;
-}
-
-void reportCounts(const HemicubeRowCounts& all, std::size_t n, FormFactorReport& report) {
-  const HemicubeCounts& counts = all.drawn;
-  report.near_pairs = all.near_pairs;
-  report.capped = all.capped;
-  report.hemicubes = counts.hemicubes;
-  report.empty_rows = n - counts.hemicubes;
-  report.rasterised_polygons = counts.rasterised_polygons;
-  report.skipped_own_plane = counts.skipped_own_plane;
-  report.skipped_horizon = counts.skipped_horizon;
-  report.skipped_facing_away = counts.skipped_facing_away;
-  report.skipped_face = counts.skipped_face;
-  report.skipped_hidden = counts.skipped_hidden;
-  report.pixels = counts.pixels;
 }
 
 /// Form factors without rows yet.
@@ -442,8 +423,9 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   const KnownEntries known = knownByPatch(std::move(known_rows), n, processes);
   std::vector<std::vector<SeenBack>> seen_backs(n);
   ClosedRows closed(mesh, false);
-  reportCounts(fillRows(scene, known, closed, journal, processes, result, seen_backs, progress), n,
-               report);
+  report.hemicube =
+      fillRows(scene, known, closed, journal, processes, result, seen_backs, progress);
+  report.empty_rows = n - report.hemicube.hemicubes;
   closed.report(mesh, report);
   if (processes != nullptr) {
     result.matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(

@@ -41,15 +41,8 @@ bool isSingle(const ExchangeMatrix& matrix) {
 
 }  // namespace
 
-HemicubeRowCounts& HemicubeRowCounts::operator+=(const HemicubeRowCounts& other) {
-  drawn += other.drawn;
-  near_pairs += other.near_pairs;
-  capped += other.capped;
-  return *this;
-}
-
 void keepRow(RowJournal& journal, std::size_t i, const FormFactors& result,
-             const std::vector<SeenBack>& seen_backs, const HemicubeRowCounts& counts) {
+             const std::vector<SeenBack>& seen_backs, const HemicubeReport& counts) {
   ByteWriter bytes;
   if (isSingle(result.matrix)) {
     putEntries<float>(result.matrix, i, bytes);
@@ -65,7 +58,7 @@ void keepRow(RowJournal& journal, std::size_t i, const FormFactors& result,
 }
 
 bool takeRow(const RowJournal& journal, std::size_t i, FormFactors& result,
-             std::vector<SeenBack>& seen_backs, HemicubeRowCounts& counts) {
+             std::vector<SeenBack>& seen_backs, HemicubeReport& counts) {
   if (!journal.has(RowBlock::hemicube_row, i)) return false;
   const std::vector<std::byte> block = journal.kept(RowBlock::hemicube_row, i);
   ByteReader bytes(block);
@@ -80,7 +73,7 @@ bool takeRow(const RowJournal& journal, std::size_t i, FormFactors& result,
   const auto backs = bytes.get<double>();
   const auto sky = bytes.get<double>();
   std::vector<SeenBack> seen = bytes.getArray<SeenBack>();
-  const auto counted = bytes.get<HemicubeRowCounts>();
+  const auto counted = bytes.get<HemicubeReport>();
   if (!bytes.isWhole()) return false;
   result.matrix.setRow(i, columns, values);
   result.fronts[i] = fronts;

@@ -11,21 +11,13 @@
 
 namespace radiosity {
 
-/// The counts from making one row.
-struct HemicubeRowCounts {
-  HemicubeCounts drawn;
-  std::size_t near_pairs = 0;
-  std::size_t capped = 0;
-  HemicubeRowCounts& operator+=(const HemicubeRowCounts& other);
-};
-
 /// Keeps row i of `result`, which has been stored, its black backs and counts, as a block.
 void keepRow(RowJournal& journal, std::size_t i, const FormFactors& result,
-             const std::vector<SeenBack>& seen_backs, const HemicubeRowCounts& counts);
+             const std::vector<SeenBack>& seen_backs, const HemicubeReport& counts);
 
 /// Puts a row where it was, and adds its counts. False if the journal has no such row: then nothing
 /// has changed. Thread-safe for different rows and counts.
 bool takeRow(const RowJournal& journal, std::size_t i, FormFactors& result,
-             std::vector<SeenBack>& seen_backs, HemicubeRowCounts& counts);
+             std::vector<SeenBack>& seen_backs, HemicubeReport& counts);
 
 }  // namespace radiosity

@@ -152,8 +152,9 @@ class FormFactors(Fixed):
         matrix's, relative; largest_row_error: how far a row's sum is above 1, or off 1 if closed.
         reciprocity_residual: of hemicubes. symmetrized, closure_enforced, closure (a dict: residuals
         before and after, moves). seconds, seconds_plan, estimated_seconds, matrix_bytes,
-        estimated_bytes. polygons, empty_rows, hemicubes, near_pairs, simd_target. exact, rays: dicts of
-        counts of the work that these methods did or skipped. notes: a dict of severity and text each.
+        estimated_bytes. polygons, empty_rows, exact_rows, simd_target. exact, rays: dicts of the work
+        that these methods did or skipped, and its seconds; of hemicubes: hemicubes, pixels,
+        rasterised_polygons, skipped_..., near_pairs, capped. notes: a dict of severity and text each.
         """
         return self._handle.report
 

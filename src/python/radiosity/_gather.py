@@ -62,7 +62,7 @@ class Gathered(Fixed):
     @property
     def summary(self) -> dict:
         """What was done, a dict: status (converged, pass_limit or no_light), message, passes (a list of
-        dicts), hemicubes, pixels, closed, bytes, seconds, notes."""
+        dicts), hemicubes, pixels, closed, bytes, seconds, simd_target, notes."""
         return self._handle.summary
 
     @property

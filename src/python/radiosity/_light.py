@@ -50,7 +50,8 @@ class Solution(Fixed):
     @property
     def summary(self) -> dict:
         """What the solver did, a dict: status (converged, no_convergence or no_light), usable,
-        message, solver, iterations, rows (of the matrix that were used), residual and residual_history
+        message, solver, iterations, rows (of the matrix that were used), skipped (a dict: rows of
+        black_patches, dark_bands, equal_bands), residual and residual_history
         (relative to the largest emission), error_bound (W/m^2, of |B - B*|; None: unknown), energy
         (lists by band, W: emitted, from_sky, absorbed, to_sky, on_backs, imbalance), seconds.
 

@@ -137,8 +137,8 @@ class Mesh(Fixed):
         overlapped, degenerate, m^2); counts of repairs (welded_vertices, degenerate_faces,
         duplicate_faces, nonplanar_faces, hidden_sides, cuts, split_edges) and of what is left
         (t_junctions, crossings, nonmanifold_edges); polygons, triangles, quads, clusters;
-        largest_deviation, longest_edge (m), smallest_angle (degrees); notes: a dict of severity and text
-        each."""
+        largest_deviation, longest_edge (m), smallest_angle, widest_cone (degrees);
+        smallest_angle_surface; notes: a dict of severity and text each."""
         return self._handle.report
 
     def per_patch(self, by_name: Mapping[str, Any], other: Any = 0.0) -> np.ndarray:
