@@ -9,6 +9,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/names.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/results.h"
 
@@ -54,6 +55,19 @@ struct CompareOptions {
   /// The largest distance between matching points, as a fraction of A's diagonal; 0 to 0.1.
   double match = 1e-3;
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "fit_scale", .help = "Multiply B by the factor that fits best, and print it"},
+         o.fit_scale);
+    list({.name = "partial",
+          .help = "Compare the parts that match even where they are less than 99% of either side"},
+         o.partial);
+    list({.name = "match",
+          .value = "FRACTION",
+          .help = "How far apart points of one surface may be, of A's diagonal"},
+         o.match, {.to = 0.1, .above = 0});
+  }
 };
 
 /// Sums over cells, weighted with area, by band.

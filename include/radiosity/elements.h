@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/report_line.h"
 
@@ -37,6 +38,28 @@ struct ElementOptions {
 
   /// Throws InputError naming the option and its range.
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "tolerance",
+          .option = "element-tolerance",
+          .value = "SHARE",
+          .help = "Elements are cut where interpolation misses by more than this share of the "
+                  "light there, and have more rays where those of indirect light are spread by "
+                  "seven times that"},
+         o.tolerance, {.from = 1e-4, .to = 0.5});
+    list({.name = "smallest_edge"}, o.smallest_edge, {.from = 1e-5, .to = 0.1});
+    list({.name = "most_vertices"}, o.most_vertices, {.from = 1});
+    list({.name = "rays"}, o.rays,
+         {.from = 64, .to = 4096, .only = OptionRange::Only::power_of_two});
+    list({.name = "most_rays"}, o.most_rays, {.from = 1});
+    list({.name = "crease",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "Interpolate across edges that bend less"},
+         o.crease, {.from = 0, .to = 180});
+    list({.name = "seed"}, o.seed);
+  }
 };
 
 /// The roots of the trees. A patch that is a triangle or a convex quadrilateral is one root; any

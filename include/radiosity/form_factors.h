@@ -12,6 +12,7 @@
 #include "radiosity/closure.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factor_method.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/report_line.h"
 #include "radiosity/row_journal.h"
@@ -96,6 +97,92 @@ struct FormFactorOptions {
   static constexpr double kMostRaysUnasked = 2e8;
 
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    const auto uses = [&o](const char* option) { return traitsOf(o.method).uses(option); };
+    list({.name = "method",
+          .value = "METHOD",
+          .help = "How form factors are computed (default auto: exact or rays, by what a sample of "
+                  "rows takes)"},
+         o.method);
+    list({.name = "tolerance",
+          .value = "FRACTION",
+          .help = "exact: error aimed at for an occluded pair, relative to the mean form factor "
+                  "1/N (default {:g}); rays: relative error of a row, L2 (default {:g}, or what "
+                  "{:g} million rays reach)",
+          .figures = {kExactTolerance, kRayTolerance, 1e-6 * kMostRaysUnasked},
+          .used = uses("tolerance"),
+          .unset = o.sources_only ? "sources" : "default"},
+         o.tolerance, {.from = 1e-12, .to = 0.1});
+    list(
+        {.name = "closure",
+         .value = "off|report|enforce",
+         .help = "In a closed scene say how far row sums are from 1 (report, default), or make "
+                 "them 1 by the smallest change to occluded pairs (enforce); rays: rows are closed "
+                 "unless off",
+         .used = uses("closure")},
+        o.closure);
+    list({.name = "seed",
+          .help = "rays: seed of their directions; hemicube: of the random turns",
+          .used = uses("seed")},
+         o.seed);
+    list({.name = "resolution",
+          .value = "PIXELS",
+          .unit = "pixels",
+          .help = "hemicube: edge of the top face",
+          .used = uses("resolution")},
+         o.resolution, {.from = 16, .to = 4096, .only = OptionRange::Only::even});
+    list({.name = "symmetrize",
+          .help = "hemicube: merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore "
+                  "the row sums",
+          .used = uses("symmetrize")},
+         o.symmetrize);
+    list({.name = "near_exact",
+          .option = "near",
+          .value = "exact|off",
+          .help = "hemicube: area-to-area values times the visible fraction for pairs closer than "
+                  "about two patch sizes",
+          .used = uses("near"),
+          .on = "exact"},
+         o.near_exact);
+    list({.name = "random_turns", .used = uses("random-turns"), .in_key = InKey::if_changed},
+         o.random_turns);
+    list({.name = "eye",
+          .value = "cpu|gl|auto",
+          .help = "hemicubes are drawn by the processor (cpu, default: the same bits on every "
+                  "machine), by OpenGL (gl; radiosity info --devices lists what can), or by OpenGL "
+                  "where there is hardware for it (auto)",
+          .used = uses("eye"),
+          .in_key = InKey::if_changed},
+         o.eye);
+    list({.name = "exact_emitters",
+          .option = "emitters",
+          .value = "exact|estimated",
+          .help = "rays, hemicube: form factors to and from what emits are exact, or estimated as "
+                  "all others",
+          .in_key = InKey::if_changed,
+          .on = "exact",
+          .off = "estimated"},
+         o.exact_emitters);
+    list({.name = "precision",
+          .value = "auto|single|double",
+          .help = "Of the stored form factors (default auto: single unless the tolerance is below "
+                  "1e-6); sums are always double",
+          .unset = "auto"},
+         o.precision);
+    list({.name = "memory_limit",
+          .value = "SIZE",
+          .unit = "bytes",
+          .help = "Keep form factors that need more memory in a nameless file beside the output, "
+                  "and refuse those that still do not fit: bytes, or 512M, 2G, ... (default: no "
+                  "limit)",
+          .in_key = InKey::never},
+         o.memory_limit);
+    list({.name = "memory_held", .unit = "bytes", .in_key = InKey::never}, o.memory_held);
+    list({.name = "scratch_folder", .in_key = InKey::never}, o.scratch_folder);
+  }
+
   Precision storedPrecision() const;
   /// The tolerance of a method; of one without, that of exact form factors beside its own.
   double toleranceOf(FormFactorMethod by) const {

@@ -9,6 +9,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/report_line.h"
 #include "radiosity/solve.h"
@@ -39,6 +40,43 @@ struct GatherOptions {
   double inset = 0.1;
   bool simd = true;  ///< false: Highway's scalar target (same bits)
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "at",
+          .value = "vertices|patches",
+          .help = "Where the eyes stand: at vertices (default), one for each smooth side, so that "
+                  "radiosity is interpolated over patches; or at the centres of patches, one "
+                  "radiosity each"},
+         o.at);
+    list({.name = "passes", .value = "K", .help = "Passes at most: pass k adds the k-th bounce"},
+         o.passes, {.from = 1, .to = 100000});
+    list({.name = "tolerance",
+          .option = "gather-tolerance",
+          .value = "RATIO",
+          .help = "Stop when further passes add at most this times the largest emission"},
+         o.tolerance, {.above = 0, .below = 1});
+    list({.name = "resolution",
+          .value = "PIXELS",
+          .unit = "pixels",
+          .help = "Edge of the hemicube's top face"},
+         o.resolution, {.from = 16, .to = 4096, .only = OptionRange::Only::even});
+    list({.name = "seed", .help = "Seed of each hemicube's random turn"}, o.seed);
+    list({.name = "crease",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "A vertex looks once per side that bends less"},
+         o.crease, {.from = 0, .to = 180});
+    list({.name = "random_turns", .in_key = InKey::if_changed}, o.random_turns);
+    list({.name = "eye",
+          .value = "cpu|gl|auto",
+          .help = "Hemicubes are drawn by the processor (cpu, default: the same bits on every "
+                  "machine), by OpenGL (gl; radiosity info --devices lists what can), or by OpenGL "
+                  "where there is hardware for it (auto)",
+          .in_key = InKey::if_changed},
+         o.eye);
+    list({.name = "inset", .in_key = InKey::if_changed}, o.inset, {.to = 0.5, .above = 0});
+  }
 };
 
 /// One pass: light gathered from the radiosity of the pass before.

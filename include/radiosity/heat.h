@@ -9,6 +9,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/report_line.h"
 #include "radiosity/scene.h"
@@ -17,6 +18,10 @@ namespace [[gnu::visibility("default")]] radiosity {
 
 /// 2 pi^5 k^4 / (15 h^3 c^2), W/m^2/K^4, from the exact constants of the SI (CODATA 2018).
 inline constexpr double kStefanBoltzmann = 5.67037441918443e-8;
+
+/// The highest temperature that is accepted, K: far above that of solid surfaces, and sigma T^4
+/// keeps all its digits.
+inline constexpr double kHottest = 1e8;
 
 /// The share of a blackbody's exitance at `temperature` K at wavelengths below `wavelength`
 /// micrometres; 0 if their product is 0 (Chang & Rhee, Int. Comm. Heat Mass Transfer 11, 1984).
@@ -65,6 +70,40 @@ struct HeatOptions {
   int max_iterations = 100;         ///< of Newton's method, 1 or more
   double sigma = kStefanBoltzmann;  ///< W/m^2/K^4, for comparison with others' figures
   void validate() const;            ///< Throws InputError naming the option and its range.
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "sky_temperature",
+          .value = "K",
+          .unit = "K",
+          .help = "Temperature of the black sky wherever rays leave the scene"},
+         o.sky_temperature, {.from = 0, .to = kHottest});
+    list({.name = "band_edges",
+          .value = "UM,UM,...",
+          .unit = "um",
+          .help = "Cut the spectrum into bands at these wavelengths, micrometres (default: one "
+                  "grey band)",
+          .unset = "none"},
+         o.bands.edges);
+    list(
+        {.name = "band_fractions",
+         .value = "F,F,...",
+         .help = "Bands with these shares of sigma T^4 at any temperature; they sum to 1 (default: "
+                 "one grey band)",
+         .unset = "none"},
+        o.bands.fractions);
+    list({.name = "tolerance",
+          .option = "heat-tolerance",
+          .value = "RATIO",
+          .help = "Stop when no radiosity and no heat balance is off by more than this times the "
+                  "largest radiosity"},
+         o.tolerance, {.above = 0, .below = 1});
+    list({.name = "max_iterations",
+          .option = "heat-iterations",
+          .help = "Steps of Newton's method at most; then exit code 1"},
+         o.max_iterations, {.from = 1});
+    list({.name = "sigma", .in_key = InKey::if_changed}, o.sigma, {.above = 0});
+  }
 };
 
 enum class HeatStatus {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
@@ -33,6 +34,28 @@ struct LightmapOptions {
   std::size_t bytes() const;
   /// Throws InputError naming the option and its range.
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "size",
+          .option = "lightmap-size",
+          .value = "TEXELS",
+          .unit = "texels",
+          .help = "Width and height"},
+         o.size, {.from = kSmallest, .to = kLargest});
+    list(
+        {.name = "shows",
+         .option = "lightmap-shows",
+         .value = "QUANTITY",
+         .help = "irradiance (default): what arrives, for viewers that multiply it by material and "
+                 "texture; radiosity: what leaves, textures averaged over patches; W/m^2"},
+        o.shows);
+    list({.name = "crease",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "Interpolate across edges that bend less"},
+         o.crease, {.from = 0, .to = 180});
+  }
 };
 
 /// A triangle of one side of a face. Faces with more corners are cut into triangles.

@@ -84,12 +84,19 @@ inline constexpr NameTable<GatherStatus, 4> kGatherStatusNames{
      {GatherStatus::no_light, "no_light"},
      {GatherStatus::unbalanced, "unbalanced"}}};
 
-// The table of an enum that a report holds.
+// The table of an enum, for the lists of options and reports.
 constexpr const auto& tableOf(Solver) { return kSolverNames; }
 constexpr const auto& tableOf(SolveStatus) { return kSolveStatusNames; }
 constexpr const auto& tableOf(HeatStatus) { return kHeatStatusNames; }
 constexpr const auto& tableOf(GatherStatus) { return kGatherStatusNames; }
 constexpr const auto& tableOf(DirectLight) { return kDirectLightNames; }
+constexpr const auto& tableOf(VertexColours) { return kVertexColoursNames; }
+constexpr const auto& tableOf(FormFactorMethod) { return kMethodNames; }
+constexpr const auto& tableOf(ClosureMode) { return kClosureNames; }
+constexpr const auto& tableOf(EyeChoice) { return kEyeNames; }
+constexpr const auto& tableOf(Precision) { return kPrecisionNames; }
+constexpr const auto& tableOf(GatherAt) { return kGatherAtNames; }
+constexpr const auto& tableOf(LightmapShows) { return kLightmapShowsNames; }
 
 /// The word for a value. Throws logic_error if the table lacks it.
 template <class Enum, std::size_t N>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/option_line.h"
 #include "radiosity/report_line.h"
 #include "radiosity/scene.h"
 
@@ -113,6 +114,9 @@ struct PatchMesh {
   }
 };
 
+/// Indices and form factors of more could not be handled.
+inline constexpr double kMostPatches = 20e6;
+
 struct MeshOptions {
   /// About how many unknowns (both sides counted once); 1 or more. If outlines alone take more
   /// cells, cells of a polygon are joined; a polygon is at least one patch. If that is more than
@@ -125,6 +129,26 @@ struct MeshOptions {
   bool faces_as_patches = false;  ///< patch k is face k of the file; nothing welded, cut, reordered
   /// Throws InputError naming the option and its range.
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "patches",
+          .help = "About how many patches; where a scene has more planar pieces than that, they "
+                  "share as many unknowns"},
+         o.patches, {.from = 1, .to = kMostPatches});
+    list({.name = "max_edge",
+          .value = "METRES",
+          .unit = "m",
+          .help = "Longest edge of a patch (default: derived from the number of patches)"},
+         o.max_edge, {.from = 0});
+    list({.name = "weld",
+          .value = "FRACTION",
+          .help = "Points closer than this fraction of the scene's diagonal are one"},
+         o.weld, {.from = 0, .to = 0.01});
+    list({.name = "faces_as_patches",
+          .help = "Patch k is face k of the file: nothing is welded, cut or re-ordered"},
+         o.faces_as_patches);
+  }
 };
 
 /// The account of the area of one surface, m^2, one side.

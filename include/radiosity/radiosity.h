@@ -16,6 +16,7 @@
 #include "radiosity/matrix_files.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/names.h"
+#include "radiosity/option_line.h"
 #include "radiosity/page.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/pipeline.h"

@@ -9,6 +9,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/elements.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/point_materials.h"
 #include "radiosity/scene.h"
@@ -32,6 +33,38 @@ struct RenderOptions {
   /// Colour where nothing is hit, opaque: a sky. None: transparent.
   std::optional<Vec3> background;
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "width",
+          .value = "PIXELS",
+          .unit = "pixels",
+          .help =
+              "Width of the picture; from the height and the camera's aspect ratio if that alone "
+              "is given"},
+         o.width, {.from = 1, .to = 16384});
+    list({.name = "height",
+          .value = "PIXELS",
+          .unit = "pixels",
+          .help = "Default: from the width and the camera's aspect ratio; the width, where it has "
+                  "none"},
+         o.height, {.from = 1, .to = 16384});
+    list({.name = "samples", .help = "N x N samples a pixel"}, o.samples, {.from = 1, .to = 16});
+    list({.name = "crease",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "Interpolate across edges that bend less"},
+         o.crease, {.from = 0, .to = 180});
+    list({.name = "smooth"}, o.smooth);
+    list({.name = "show_backs",
+          .option = "backs",
+          .value = "hide|show",
+          .help = "hide: look through the backs of one-sided surfaces (default); show: they are "
+                  "black",
+          .on = "show",
+          .off = "hide"},
+         o.show_backs);
+  }
 };
 
 /// A camera for a scene without one. It shows much of the scene, and lit parts of it: from inside a

@@ -8,6 +8,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
+#include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/report_line.h"
 
@@ -38,6 +39,25 @@ struct SolveOptions {
   double tolerance = 1e-6;
   int max_iterations = 10000;  ///< products or sweeps over the matrix; 1 or more
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "solver",
+          .value = "NAME",
+          .help = "auto (default): direct for up to {} unknowns, else cg, or gmres where form "
+                  "factors are raw hemicube rows; cg: conjugate gradients; gmres: for any matrix; "
+                  "petsc: PETSc's KSP, under mpirun; direct: factors it, up to {} unknowns; "
+                  "gauss-seidel and jacobi: the classic sweeps, slow in bright rooms",
+          .figures = {double(kFewUnknowns), double(kMostDirectUnknowns)}},
+         o.solver);
+    list({.name = "tolerance",
+          .option = "solve-tolerance",
+          .value = "RATIO",
+          .help = "Stop when the largest residual is at most this times the largest emission"},
+         o.tolerance, {.above = 0, .below = 1});
+    list({.name = "max_iterations", .help = "Sweeps or products at most; then exit code 1"},
+         o.max_iterations, {.from = 1});
+  }
 };
 
 enum class SolveStatus {

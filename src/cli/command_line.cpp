@@ -26,7 +26,6 @@ constexpr std::array kCommands = {Command::info,    Command::mesh,   Command::fa
                                   Command::compare, Command::render, Command::view};
 
 void addCompareOptions(CLI::App& app, Request& r) {
-  const CompareOptions defaults;
   app.add_option("B", r.second, "The file to compare with A; none with --gather")->option_text(" ");
   app.add_flag(
          "--gather", r.with_gather,
@@ -38,14 +37,7 @@ void addCompareOptions(CLI::App& app, Request& r) {
         "the file says; where it does not, this is needed)")
         ->check(CLI::IsMember(namesIn(kLightUnitNames)));
   }
-  app.add_flag("--fit-scale", r.fit_scale, "Multiply B by the factor that fits best, and print it")
-      ->group("Compare");
-  app.add_flag("--partial", r.partial,
-               "Compare the parts that match even where they are less than 99% of either side")
-      ->group("Compare");
-  add(app, "Compare", "--match", r.match, "FRACTION",
-      fmt::format("How far apart points of one surface may be, of A's diagonal (default {})",
-                  defaults.match));
+  addOptionsOf<CompareOptions>(app, r, "Compare");
   app.add_flag("--form-factors", r.compare_factors,
                "Compare the form factors of results files, not their light; files of form factors "
                "alone (.mtx, .vf) need no option")
@@ -123,8 +115,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   addMeshOptions(*sub, r);
   if (command == Command::mesh) return sub;
   if (command == Command::gather) {
-    addGatherOptions(*sub, r);
-    addEyeOptions(*sub, r);
+    addOptionsOf<GatherOptions>(*sub, r, "Gather");
     addCameraOptions(*sub, r);
     addRenderOptions(*sub, r);
     return sub;
@@ -138,12 +129,12 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     addHeatOptions(*sub, r);
     return sub;
   }
-  addSolveOptions(*sub, r);
+  addOptionsOf<SolveOptions>(*sub, r, "Solve");
   if (command == Command::solve) addBasisOption(*sub, r);
   if (command == Command::solve || command == Command::render) addMixOption(*sub, r);
   if (command == Command::solve) addMatrixOptions(*sub, r);
   if (compares) {
-    addGatherOptions(*sub, r);
+    addOptionsOf<GatherOptions>(*sub, r, "Gather");
     bindToGather(*sub);
   }
   if (compares || command == Command::render) addCameraOptions(*sub, r);
@@ -158,7 +149,6 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   }
   if (command == Command::view) {
     addExposureOption(*sub, r, "The page first shows");
-    addCreaseOption(*sub, r);
   }
   return sub;
 }

@@ -278,17 +278,14 @@ void drawField(Session& session, const LightField& side, const Comparison& c, Pi
 
 /// Refuses options that do not apply to pictures, which are compared pixel by pixel.
 void requirePixelOptions(const Request& request) {
-  const std::pair<const char*, bool> of_surfaces[] = {{"--camera", !request.camera.empty()},
-                                                      {"--width", request.width.has_value()},
-                                                      {"--height", request.height.has_value()},
-                                                      {"--match", request.match.has_value()},
-                                                      {"--partial", request.partial}};
-  for (const auto& [name, given] : of_surfaces) {
-    if (!given) continue;
-    throw InputError(fmt::format(
-        "{}: is about surfaces, and A and B are pictures, compared pixel by pixel; leave it out",
-        name));
-  }
+  const std::string of_surfaces =
+      request.camera.empty()
+          ? request.given.firstOf({"width", "height", "samples", "backs", "match", "partial"})
+          : "--camera";
+  if (of_surfaces.empty()) return;
+  throw InputError(of_surfaces +
+                   ": is about surfaces, and A and B are pictures, compared pixel by pixel; leave "
+                   "it out");
 }
 
 void requirePicture(const OutputSet& files, const Request& request) {
@@ -305,7 +302,7 @@ int compareFiles(Session& session, OutputSet& files) {
     throw InputError(
         "compare: B is missing: radiosity compare A B, or radiosity compare A --gather");
   }
-  const CompareOptions options = request.compareOptions();
+  const CompareOptions options = request.apply(CompareOptions());
   const Side a = readSide("A", request.input, request.a_is, request.scene.max_image);
   const Side b = readSide("B", request.second, request.b_is, request.scene.max_image);
   if (a.isImage() != b.isImage()) {
@@ -369,7 +366,7 @@ int compareWithGather(Session& session, OutputSet& files) {
     throw InputError(fmt::format("compare: --gather compares {} with itself, so {} is one too many",
                                  request.input, request.second));
   }
-  const CompareOptions options = request.compareOptions();
+  const CompareOptions options = request.apply(CompareOptions());
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   requireLight(session, pipeline);

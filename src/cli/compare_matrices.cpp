@@ -14,16 +14,17 @@ namespace {
 constexpr double kSameArea = 1e-5;
 
 void requireNothingElse(const Request& request, const OutputSet& files) {
-  const std::pair<const char*, bool> of_light[] = {
-      {"--gather", request.with_gather},       {"--a-is", !request.a_is.empty()},
-      {"--b-is", !request.b_is.empty()},       {"--fit-scale", request.fit_scale},
-      {"--partial", request.partial},          {"--match", request.match.has_value()},
-      {"--camera", !request.camera.empty()},   {"--width", request.width.has_value()},
-      {"--height", request.height.has_value()}};
-  for (const auto& [name, given] : of_light) {
-    if (!given) continue;
-    throw InputError(
-        fmt::format("{}: is about light, and A and B are form factors; leave it out", name));
+  const std::pair<const char*, bool> of_light[] = {{"--gather", request.with_gather},
+                                                   {"--a-is", !request.a_is.empty()},
+                                                   {"--b-is", !request.b_is.empty()},
+                                                   {"--camera", !request.camera.empty()}};
+  std::string given = request.given.firstOf(
+      {"fit-scale", "partial", "match", "width", "height", "samples", "backs"});
+  for (const auto& [name, is_given] : of_light) {
+    if (is_given) given = name;
+  }
+  if (!given.empty()) {
+    throw InputError(given + ": is about light, and A and B are form factors; leave it out");
   }
   if (!files.all().empty()) {
     throw InputError(files.all().front().path +

@@ -62,7 +62,7 @@ ElementUse elementUse(const Request& request, const OutputSet& files) {
   if (request.visible_only) use.all = false;
   if (use.shown || use.all) return use;
   if (asked) throw InputError("--elements on: " + whyNone(request, files));
-  if (request.element_tolerance) {
+  if (request.given.has("element-tolerance")) {
     throw InputError(fmt::format("--element-tolerance: no elements are evaluated here; {}",
                                  toleranceCure(request, files)));
   }

@@ -12,7 +12,8 @@ int judgeGathered(Session& session, const Pipeline& pipeline, const GatherSummar
   if (!summary.usable()) return exitCode(session, false, summary.message);
   if (summary.status == GatherStatus::converged) return 0;
   const bool asked = summary.passes.size() != std::size_t(GatherOptions().passes);
-  if (summary.status == GatherStatus::pass_limit && (asked || session.request.passes)) return 0;
+  if (summary.status == GatherStatus::pass_limit && (asked || session.request.given.has("passes")))
+    return 0;
   const bool dark = summary.status == GatherStatus::no_light;
   const Note note{dark ? Severity::warning : Severity::loud,
                   dark ? darknessText(session.request, pipeline.scene(), pipeline.bands())

@@ -1,15 +1,11 @@
 // Options of radiative heat exchange.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 
 #include "cli/options.h"
-#include "cli/validators.h"
 
 namespace radiosity::cli {
 
 void addHeatOptions(CLI::App& app, Request& r) {
-  const HeatOptions defaults;
   add(app, "Heat", "--thermal", r.thermal, "FILE.csv",
       "Conditions by surface, material or object name, or by a pattern of them; * stands for all "
       "others. Of a matrix (.mtx, .vf): by name or number of rows. Columns: surface, "
@@ -22,23 +18,8 @@ void addHeatOptions(CLI::App& app, Request& r) {
   add(app, "Heat", "--group", r.groups, "NAME=PATTERN",
       "Join surfaces under one name, for conditions and in tables; * and ? stand for any text and "
       "any character, a surface belongs to the first group that matches it. May be repeated");
-  add(app, "Heat", "--sky-temperature", r.sky_temperature, "K",
-      fmt::format("Temperature of the black sky wherever rays leave the scene (default {:g})",
-                  defaults.sky_temperature));
-  CLI::Option* edges = add(app, "Heat", "--band-edges", r.band_edges, "UM,UM,...",
-                           "Cut the spectrum into bands at these wavelengths, micrometres "
-                           "(default: one grey band)");
-  CLI::Option* fractions = add(app, "Heat", "--band-fractions", r.band_fractions, "F,F,...",
-                               "Bands with these shares of sigma T^4 at any temperature; they sum "
-                               "to 1");
-  edges->excludes(fractions);
-  add(app, "Heat", "--heat-tolerance", r.heat_tolerance, "RATIO",
-      fmt::format("Stop when no radiosity and no heat balance is off by more than this times the "
-                  "largest radiosity (default {})",
-                  defaults.tolerance));
-  add(app, "Heat", "--heat-iterations", r.heat_iterations, "N",
-      fmt::format("Steps of Newton's method at most; then exit code 1 (default {})",
-                  defaults.max_iterations));
+  addOptionsOf<HeatOptions>(app, r, "Heat");
+  app.get_option("--band-edges")->excludes(app.get_option("--band-fractions"));
   add(app, "Heat", "--patch-table", r.patch_table, "FILE.csv",
       "Write the figures of every patch, beside those of surfaces in -o FILE.csv");
   addAreasOption(app, r, "Heat");

@@ -17,9 +17,8 @@ namespace radiosity::cli {
 namespace {
 
 void requireMemory(const Request& request, const LightmapOptions& options) {
-  if (request.memory_limit.empty()) return;
-  const std::size_t limit = parseBytes("--memory-limit", request.memory_limit);
-  if (options.bytes() <= limit) return;
+  const std::size_t limit = request.apply(FormFactorOptions()).memory_limit;
+  if (limit == 0 || options.bytes() <= limit) return;
   throw InputError(
       fmt::format("--lightmap-size {}: the map takes {}, --memory-limit allows {}; "
                   "make it smaller or allow more",
@@ -99,9 +98,9 @@ void summarize(Report& report, const Lightmap& map, int set) {
 
 void checkLightmap(const Request& request, const ElementUse& elements, const OutputSet& files) {
   if (request.lightmap.empty()) {
-    const char* alone = request.lightmap_size    ? "--lightmap-size"
-                        : request.lightmap_shows ? "--lightmap-shows"
-                                                 : nullptr;
+    const char* alone = request.given.has("lightmap-size")    ? "--lightmap-size"
+                        : request.given.has("lightmap-shows") ? "--lightmap-shows"
+                                                              : nullptr;
     if (alone == nullptr) return;
     throw InputError(fmt::format("{}: there is no lightmap; add --lightmap FILE.exr", alone));
   }
@@ -115,14 +114,14 @@ void checkLightmap(const Request& request, const ElementUse& elements, const Out
     throw InputError(fmt::format("--lightmap {}: shows light at elements; leave out {}",
                                  request.lightmap, request.flat ? "--flat" : "--elements off"));
   }
-  requireMemory(request, request.lightmapOptions());
+  requireMemory(request, request.apply(LightmapOptions()));
 }
 
 void writeLightmap(Session& session, const Scene& scene, const PatchMesh& mesh,
                    const SurfaceLight& light, double ev, OutputSet& files) {
   const Request& request = session.request;
   const Lightmap map =
-      makeLightmap(scene, mesh, light, request.lightmapOptions(), session.progress);
+      makeLightmap(scene, mesh, light, request.apply(LightmapOptions()), session.progress);
   const std::string shows = nameOf(kLightmapShowsNames, map.shows);
   files.write(Format::lightmap, "lightmap, " + shows + ", W/m^2, linear",
               [&](const std::string& temporary) {

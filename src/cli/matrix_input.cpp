@@ -37,11 +37,6 @@ void refuseSceneOptions(const Request& request) {
       {"--flip", !request.scene.flip.empty()},
       {"--without", !request.scene.without.empty()},
       {"--sky", request.scene.sky.has_value()},
-      {"--patches", request.patches.has_value()},
-      {"--max-edge", request.max_edge.has_value()},
-      {"--method", request.method.has_value()},
-      {"--tolerance", request.tolerance.has_value()},
-      {"--closure", request.closure.has_value()},
       {"--elements", request.elements.has_value()},
       {"--basis", !request.basis.empty()},
       {"--mix", !request.mix.empty()},
@@ -54,6 +49,9 @@ void refuseSceneOptions(const Request& request) {
     if (given) refuse(name);
   }
   if (!request.reading_options.empty()) refuse(request.reading_options.front());
+  const std::string of_stages =
+      request.given.firstOf({"patches", "max-edge", "method", "tolerance", "closure"});
+  if (!of_stages.empty()) refuse(of_stages);
 }
 
 MatrixFile readMatrixInput(Session& session) {

@@ -18,6 +18,14 @@ CLI::Option* add(CLI::App& app, const char* group, const std::string& names, Val
   return option;
 }
 
+/// Adds the options of a struct, as its list has them, but for those of another struct that are
+/// there already: --crease serves pictures and elements. (described_options.cpp)
+void addOptions(CLI::App& app, Request& r, const char* group, const std::vector<Option>& options);
+template <class Options>
+void addOptionsOf(CLI::App& app, Request& r, const char* group) {
+  addOptions(app, r, group, optionLines(Options()));
+}
+
 // stage_options.cpp
 void addSceneOptions(CLI::App& app, Request& r);
 void addMeshOptions(CLI::App& app, Request& r);
@@ -27,13 +35,9 @@ void addAreasOption(CLI::App& app, Request& r, const char* group);
 /// Options for solving with a matrix from a file.
 void addMatrixOptions(CLI::App& app, Request& r);
 void addTableOptions(CLI::App& app, Request& r);
-void addSolveOptions(CLI::App& app, Request& r);
 /// Options for light of single lamps, of `solve` only.
 void addBasisOption(CLI::App& app, Request& r);
 void addMixOption(CLI::App& app, Request& r);
-void addGatherOptions(CLI::App& app, Request& r);
-/// Options that gathering shares with form factors.
-void addEyeOptions(CLI::App& app, Request& r);
 
 // heat_options.cpp
 void addHeatOptions(CLI::App& app, Request& r);
@@ -44,7 +48,6 @@ void addCameraOption(CLI::App& app, Request& r);
 void addCameraOptions(CLI::App& app, Request& r);
 /// `shown_in`: the beginning of a sentence, "The page first shows".
 void addExposureOption(CLI::App& app, Request& r, const char* shown_in);
-void addCreaseOption(CLI::App& app, Request& r);
 void addRenderOptions(CLI::App& app, Request& r);
 void addLightmapOptions(CLI::App& app, Request& r);
 void addElementOptions(CLI::App& app, Request& r);

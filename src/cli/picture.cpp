@@ -53,8 +53,9 @@ Picture choosePicture(const Request& request, const Scene& scene) {
   }
   const double aspect = picture.camera.aspect > 0 ? picture.camera.aspect : 1;
   RenderOptions& o = picture.options;
-  if (!request.height) o.height = otherSide(o.width / aspect);
-  if (!request.width && request.height) o.width = otherSide(o.height * aspect);
+  const bool by_height = request.given.has("height");
+  if (!by_height) o.height = otherSide(o.width / aspect);
+  if (by_height && !request.given.has("width")) o.width = otherSide(o.height * aspect);
   o.validate();
   return picture;
 }

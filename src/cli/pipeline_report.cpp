@@ -88,20 +88,19 @@ void PipelineReport::notReused(const std::string& path, const std::string& why) 
 
 /// Notes given options that apply to another method than the chosen one.
 void PipelineReport::noteUnused(FormFactorMethod method) {
-  const MethodTraits& used = traitsOf(method);
+  FormFactorOptions options = request_.apply(FormFactorOptions());
+  options.method = method;
   // Gathering uses hemicubes, too.
   const bool gathers = request_.command == Command::gather || request_.command == Command::compare;
-  const std::pair<const char*, bool> options[] = {
-      {"--resolution", request_.resolution && !used.uses("resolution") && !gathers},
-      {"--eye", request_.eye && !used.uses("eye") && !gathers},
-      {"--seed", request_.seed && !used.uses("seed") && !gathers},
-      {"--symmetrize", request_.symmetrize.value_or(false) && !used.uses("symmetrize")},
-      {"--near", request_.near_pairs && !used.uses("near")},
-      {"--tolerance", request_.tolerance && !used.uses("tolerance")},
-      {"--closure", request_.closure && !used.uses("closure")}};
+  const std::vector<Option> of_gather =
+      gathers ? optionLines(GatherOptions()) : std::vector<Option>();
   std::vector<std::string> unused;
-  for (const auto& [name, is_unused] : options) {
-    if (is_unused) unused.emplace_back(name);
+  for (const Option& option : optionLines(options)) {
+    const std::string name = option.line.optionName();
+    if (option.line.used || option.text == option.line.off || !request_.given.has(name)) continue;
+    const bool used = std::ranges::any_of(
+        of_gather, [&](const Option& o) { return o.line.optionName() == name; });
+    if (!used) unused.push_back(request_.given.spelled(name));
   }
   if (unused.empty()) return;
   const Note note{Severity::warning,

@@ -104,37 +104,14 @@ void addSceneOptions(CLI::App& app, Request& r) {
 }
 
 void addMeshOptions(CLI::App& app, Request& r) {
-  const MeshOptions defaults;
-  CLI::Option* patches = add(app, "Mesh", "--patches", r.patches, "N",
-                             fmt::format("About how many patches (default {}); where a scene has "
-                                         "more planar pieces than that, they share as many "
-                                         "unknowns",
-                                         defaults.patches))
-                             ->check(wholeNumber());
-  CLI::Option* max_edge = add(app, "Mesh", "--max-edge", r.max_edge, "METRES",
-                              "Longest edge of a patch (default: derived from --patches)");
-  add(app, "Mesh", "--weld", r.weld, "FRACTION",
-      fmt::format("Points closer than this fraction of the scene's diagonal are one; 0 to 0.01 "
-                  "(default {})",
-                  defaults.weld));
-  CLI::Option* faces = app.add_flag_function(
-                              "--faces-as-patches,!--no-faces-as-patches",
-                              [&r](std::int64_t count) { r.faces_as_patches = count > 0; },
-                              "Patch k is face k of the file: nothing is welded, cut or re-ordered")
-                           ->group("Mesh");
-  patches->excludes(max_edge)->excludes(faces);
+  addOptionsOf<MeshOptions>(app, r, "Mesh");
+  CLI::Option* max_edge = app.get_option("--max-edge");
+  CLI::Option* faces = app.get_option("--faces-as-patches");
+  app.get_option("--patches")->excludes(max_edge)->excludes(faces);
   max_edge->excludes(faces);
 }
 
 namespace {
-
-void addEyeOption(CLI::App& app, Request& r, const char* group, const std::string& of) {
-  add(app, group, "--eye", r.eye, "cpu|gl|auto",
-      of + "drawn by the processor (cpu, default: the same bits on every machine), by OpenGL (gl; "
-           "radiosity info --devices lists what can), or by OpenGL where there is hardware for it "
-           "(auto)")
-      ->check(CLI::IsMember(namesIn(kEyeNames)));
-}
 
 std::string methodsText() {
   std::string text;
@@ -148,56 +125,14 @@ std::string methodsText() {
 }  // namespace
 
 void addFactorOptions(CLI::App& app, Request& r) {
-  const FormFactorOptions defaults;
-  add(app, "Form factors", "--method", r.method, "METHOD", methodsText())
-      ->check(CLI::IsMember(namesIn(kMethodNames)));
-  // In `compare`, --tolerance is that of the difference.
-  const bool compares = app.get_name() == commandName(Command::compare);
-  const std::string of_pictures =
-      app.get_name() != commandName(Command::render)
-          ? ""
-          : fmt::format("; where elements are shown and no form factors are written, {} by default",
-                        FormFactorOptions::kSourceTolerance);
-  add(app, "Form factors", compares ? "--factor-tolerance" : "--tolerance", r.tolerance, "FRACTION",
-      fmt::format("exact: error aimed at for an occluded pair, relative to the mean form factor "
-                  "1/N (default {}); rays: relative error of a row, L2 (default {}, or what {:g} "
-                  "million rays reach); 1e-12 to 0.1{}",
-                  FormFactorOptions::kExactTolerance, FormFactorOptions::kRayTolerance,
-                  1e-6 * FormFactorOptions::kMostRaysUnasked, of_pictures));
-  add(app, "Form factors", "--closure", r.closure, "off|report|enforce",
-      "In a closed scene say how far row sums are from 1 (report, default), or make them 1 by the "
-      "smallest change to occluded pairs (enforce); rays: rows are closed unless off")
-      ->check(CLI::IsMember(namesIn(kClosureNames)));
-  add(app, "Form factors", "--resolution", r.resolution, "PIXELS",
-      fmt::format("hemicube: edge of the top face; even, 16 to 4096 (default {})",
-                  defaults.resolution));
-  add(app, "Form factors", "--seed", r.seed, "N",
-      fmt::format("rays: seed of their directions; hemicube: of the random turns (default {})",
-                  defaults.seed))
-      ->check(wholeNumber());
-  addEyeOption(app, r, "Form factors", "hemicube: ");
-  app.add_flag_function(
-         "--symmetrize,!--no-symmetrize", [&r](std::int64_t count) { r.symmetrize = count > 0; },
-         "hemicube: merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore the row "
-         "sums")
-      ->group("Form factors");
-  add(app, "Form factors", "--near", r.near_pairs, "exact|off",
-      "hemicube: area-to-area values times the visible fraction for pairs closer than about two "
-      "patch sizes (default: off)")
-      ->check(CLI::IsMember({"exact", "off"}));
-  add(app, "Form factors", "--emitters", r.emitters, "exact|estimated",
-      "Rays and hemicubes: form factors to and from what emits are exact (default), or estimated "
-      "as "
-      "all others")
-      ->check(CLI::IsMember({"exact", "estimated"}));
-  add(app, "Form factors", "--precision", r.precision, "auto|single|double",
-      "Of the stored form factors (default auto: single unless --tolerance is below 1e-6); sums "
-      "are "
-      "always double")
-      ->check(CLI::IsMember({"auto", "single", "double"}));
-  add(app, "Form factors", "--memory-limit", r.memory_limit, "SIZE",
-      "Keep form factors that need more memory in a nameless file beside the output, and refuse "
-      "those that still do not fit: bytes, or 512M, 2G, ... (default: no limit)");
+  addOptionsOf<FormFactorOptions>(app, r, "Form factors");
+  app.get_option("--method")->description(methodsText());
+  if (app.get_name() == commandName(Command::render)) {
+    CLI::Option* tolerance = app.get_option("--tolerance");
+    tolerance->description(
+        fmt::format("{}; where elements are shown and no form factors are written, {} by default",
+                    tolerance->get_description(), FormFactorOptions::kSourceTolerance));
+  }
   app.add_flag_function(
          "--resume,!--no-resume", [&r](std::int64_t count) { r.resume = count > 0; },
          fmt::format("Keep rows in OUT.h5.rows as they are computed, and go on from those that a "
@@ -240,25 +175,6 @@ void addTableOptions(CLI::App& app, Request& r) {
       "EnergyPlus (.idf): the zone, zone list or enclosure (default: the input's name)");
 }
 
-void addSolveOptions(CLI::App& app, Request& r) {
-  const SolveOptions defaults;
-  add(app, "Solve", "--solver", r.solver, "NAME",
-      fmt::format("auto (default): direct for up to {} unknowns, else cg, or gmres where form "
-                  "factors are raw hemicube rows; cg: conjugate gradients; gmres: for any matrix; "
-                  "petsc: PETSc's KSP, under mpirun; "
-                  "direct: factors it, up to {} unknowns; gauss-seidel and jacobi: the classic "
-                  "sweeps, slow in bright rooms",
-                  kFewUnknowns, kMostDirectUnknowns))
-      ->check(CLI::IsMember(namesIn(kSolverNames)));
-  add(app, "Solve", "--solve-tolerance", r.solve_tolerance, "RATIO",
-      fmt::format("Stop when the largest residual is at most this times the largest emission "
-                  "(default {})",
-                  defaults.tolerance));
-  add(app, "Solve", "--max-iterations", r.max_iterations, "N",
-      fmt::format("Sweeps or products at most; then exit code 1 (default {})",
-                  defaults.max_iterations));
-}
-
 void addBasisOption(CLI::App& app, Request& r) {
   add(app, "Solve", "--basis", r.basis, "surfaces|FILE.csv",
       "Beside the solution, one for each lamp by itself, all in the same passes: a set for each "
@@ -270,33 +186,6 @@ void addMixOption(CLI::App& app, Request& r) {
   add(app, "Solve", "--mix", r.mix, "NAME=WEIGHT,...",
       "Show light of single lamps, of solve --basis, each times its weight (>= 0), without a "
       "solve; sets that are not named are off");
-}
-
-void addGatherOptions(CLI::App& app, Request& r) {
-  const GatherOptions defaults;
-  add(app, "Gather", "--at", r.gather_at, "vertices|patches",
-      "Where the eyes stand: at vertices (default), one for each smooth side, so that radiosity is "
-      "interpolated over patches; or at the centres of patches, one radiosity each")
-      ->check(CLI::IsMember(namesIn(kGatherAtNames)));
-  add(app, "Gather", "--passes", r.passes, "K",
-      fmt::format("Passes at most: pass k adds the k-th bounce (default {})", defaults.passes));
-  add(app, "Gather", "--gather-tolerance", r.gather_tolerance, "RATIO",
-      fmt::format("Stop when further passes add at most this times the largest emission (default "
-                  "{})",
-                  defaults.tolerance));
-  add(app, "Gather", "--crease", r.crease, "DEGREES",
-      fmt::format("A vertex looks once per side that bends less (default {})", defaults.crease));
-}
-
-void addEyeOptions(CLI::App& app, Request& r) {
-  const GatherOptions defaults;
-  add(app, "Gather", "--resolution", r.resolution, "PIXELS",
-      fmt::format("Edge of the hemicube's top face; even, 16 to 4096 (default {})",
-                  defaults.resolution));
-  add(app, "Gather", "--seed", r.seed, "N",
-      fmt::format("Seed of each hemicube's random turn (default {})", defaults.seed))
-      ->check(wholeNumber());
-  addEyeOption(app, r, "Gather", "Hemicubes are ");
 }
 
 }  // namespace radiosity::cli

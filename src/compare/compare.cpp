@@ -10,6 +10,7 @@
 
 #include "base/geometry/box.h"
 #include "base/geometry/surface_index.h"
+#include "base/option_list.h"
 #include "base/parallel.h"
 #include "compare/differences.h"
 
@@ -273,11 +274,7 @@ AllFound pairUp(const LightField& a, const LightField& b) {
 
 }  // namespace
 
-void CompareOptions::validate() const {
-  if (!(match > 0 && match <= 0.1)) {
-    throw InputError(fmt::format("match {} is not above 0 and at most 0.1 of the diagonal", match));
-  }
-}
+void CompareOptions::validate() const { requireRanges(*this); }
 
 Comparison compare(const LightField& a, const LightField& b, const CompareOptions& options) {
   options.validate();

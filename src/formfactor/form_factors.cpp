@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/figure_text.h"
+#include "base/option_list.h"
 #include "base/processor_clock.h"
 #include "formfactor/automatic_choice.h"
 #include "formfactor/emitter_rows.h"
@@ -50,15 +51,9 @@ void noteRowsLeftOut(const FormFactorPlan& plan, FormFactorReport& report) {
 }  // namespace
 
 void FormFactorOptions::validate() const {
-  if (resolution < 16 || resolution > 4096 || resolution % 2 != 0) {
-    throw InputError(fmt::format(
-        "hemicube resolution {}: give an even number of pixels from 16 to 4096", resolution));
-  }
+  requireRanges(*this);
   if (traitsOf(method).summary.empty()) {
     throw InputError(fmt::format("method {}: computes nothing", traitsOf(method).word));
-  }
-  if (tolerance && !(*tolerance >= 1e-12 && *tolerance <= 0.1)) {
-    throw InputError(fmt::format("tolerance {}: give a fraction from 1e-12 to 0.1", *tolerance));
   }
 }
 

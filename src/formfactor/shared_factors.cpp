@@ -1,6 +1,6 @@
 #include "formfactor/shared_factors.h"
 
-#include <fmt/format.h>
+#include <type_traits>
 
 #include "base/hash.h"
 #include "formfactor/method.h"
@@ -9,19 +9,16 @@ namespace radiosity {
 
 namespace {
 
-/// The method and the options that rows depend on, and the mesh.
-struct Task {
-  FormFactorMethod method = FormFactorMethod::exact;
-  double tolerance = 0;
-  Precision precision = Precision::single_precision;
-  ClosureMode closure = ClosureMode::report;
-  bool simd = true;
-  int resolution = 0;
-  std::uint64_t seed = 0;
-  bool random_turns = true;
-  bool near_exact = false;
-  std::uint64_t mesh = 0;  ///< checksum of its hash
-};
+/// Process 0 tells the others the options that rows depend on; they get them.
+void broadcastOptions(Processes& processes, FormFactorOptions& options) {
+  const auto list = [&](const OptionLine& line, auto& value, const OptionRange& = {}) {
+    if constexpr (std::is_trivially_copyable_v<std::remove_reference_t<decltype(value)>>) {
+      if (line.in_key != InKey::never) processes.broadcastValue(value);
+    }
+  };
+  FormFactorOptions::describe(list, options);
+  processes.broadcastValue(options.simd);
+}
 
 std::uint64_t checksumOfMesh(const PatchMesh& mesh) {
   const std::string hash = geometryHash(mesh);
@@ -57,40 +54,28 @@ void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
 }
 
 void tellOthers(Processes& processes, const PatchMesh& mesh, FormFactorMethod method,
-                const FormFactorOptions& options) {
-  Task task{method,
-            options.toleranceOf(method),
-            options.storedPrecision(),
-            options.closure,
-            options.simd,
-            options.resolution,
-            options.seed,
-            options.random_turns,
-            options.near_exact,
-            checksumOfMesh(mesh)};
-  processes.broadcastValue(task);
+                FormFactorOptions options) {
+  options.method = method;
+  options.tolerance = options.toleranceOf(method);
+  options.precision = options.storedPrecision();
+  options.eye = EyeChoice::cpu;
+  broadcastOptions(processes, options);
+  std::uint64_t checksum = checksumOfMesh(mesh);
+  processes.broadcastValue(checksum);
 }
 
 ExchangeMatrix shareFormFactors(const PatchMesh& mesh, Processes& processes, Progress& progress,
                                 RowJournal* journal) {
-  Task task;
-  processes.broadcastValue(task);
-  if (task.mesh != checksumOfMesh(mesh)) {
+  FormFactorOptions options;
+  broadcastOptions(processes, options);
+  std::uint64_t checksum = 0;
+  processes.broadcastValue(checksum);
+  if (checksum != checksumOfMesh(mesh)) {
     throw RunError(
         "the mesh is not that of process 0: give all processes the same scene file and "
         "the same program");
   }
-  FormFactorOptions options;
-  options.method = task.method;
-  options.tolerance = task.tolerance;
-  options.precision = task.precision;
-  options.closure = task.closure;
-  options.simd = task.simd;
-  options.resolution = task.resolution;
-  options.seed = task.seed;
-  options.random_turns = task.random_turns;
-  options.near_exact = task.near_exact;
-  return entryOf(task.method).rows_for_others(mesh, options, processes, progress, journal);
+  return entryOf(options.method).rows_for_others(mesh, options, processes, progress, journal);
 }
 
 }  // namespace radiosity

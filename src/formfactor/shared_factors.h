@@ -12,7 +12,7 @@ void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options);
 /// Called by process 0 in computeFormFactors(), before rows are computed, while the others are in
 /// shareFormFactors().
 void tellOthers(Processes& processes, const PatchMesh& mesh, FormFactorMethod method,
-                const FormFactorOptions& options);
+                FormFactorOptions options);
 
 /// Called by the others while process 0 is in computeFormFactors(): computes a share of the rows
 /// and returns them, all others empty. `mesh`: the same as process 0's, else RunError. `journal`:

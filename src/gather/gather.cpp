@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "base/made.h"
+#include "base/option_list.h"
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/row_accounts.h"
@@ -312,21 +313,7 @@ void runPasses(const GatherScene& scene, std::unique_ptr<GpuEye> eye, const Gath
 
 }  // namespace
 
-void GatherOptions::validate() const {
-  FormFactorOptions hemicubes;
-  hemicubes.resolution = resolution;
-  hemicubes.validate();
-  const auto require = [](bool good, const std::string& what) {
-    if (!good) throw InputError(what);
-  };
-  require(passes >= 1 && passes <= 100000,
-          fmt::format("{} passes: give a number from 1 to 100000", passes));
-  require(tolerance > 0 && tolerance < 1,
-          fmt::format("gather tolerance {} is not between 0 and 1", tolerance));
-  require(crease >= 0 && crease <= 180,
-          fmt::format("crease {} is not within 0 and 180 degrees", crease));
-  require(inset > 0 && inset <= 0.5, fmt::format("inset {} is not above 0 and at most 0.5", inset));
-}
+void GatherOptions::validate() const { requireRanges(*this); }
 
 Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
                 const GatherOptions& options, Progress& progress) {

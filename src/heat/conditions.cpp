@@ -7,6 +7,8 @@
 #include <numeric>
 #include <optional>
 
+#include "base/option_list.h"
+
 namespace radiosity {
 
 namespace {
@@ -124,20 +126,8 @@ void HeatBands::validate() const {
 }
 
 void HeatOptions::validate() const {
+  requireRanges(*this);
   bands.validate();
-  if (!isTemperature(sky_temperature)) {
-    throw InputError(fmt::format("sky temperature {} is not one in kelvin, 0 to {:g}",
-                                 sky_temperature, kHottest));
-  }
-  if (!(tolerance > 0 && tolerance < 1)) {
-    throw InputError(fmt::format("tolerance {} is not between 0 and 1", tolerance));
-  }
-  if (max_iterations < 1) {
-    throw InputError(fmt::format("max_iterations {} is not 1 or more", max_iterations));
-  }
-  if (!(sigma > 0) || !std::isfinite(sigma)) {
-    throw InputError(fmt::format("sigma {} is not a finite number above 0", sigma));
-  }
 }
 
 void validate(std::span<const HeatCondition> conditions, int bands) {

@@ -7,9 +7,7 @@
 
 namespace radiosity {
 
-/// The highest temperature that is accepted, K: far above that of solid surfaces, and sigma T^4
-/// keeps all its digits. The largest heat flux is that of a black surface at this temperature.
-inline constexpr double kHottest = 1e8;
+/// W/m^2, of a black surface at kHottest.
 inline constexpr double kMostFlux = 5.67e24;
 /// W, W/m^2/K.
 inline constexpr double kMostPower = 1e30;

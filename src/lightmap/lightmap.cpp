@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/geometry/box.h"
+#include "base/option_list.h"
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "lightmap/chart_texels.h"
@@ -18,15 +19,7 @@ std::size_t LightmapOptions::bytes() const {
   return std::size_t(size) * std::size_t(size) * 3 * 4 * sizeof(float);
 }
 
-void LightmapOptions::validate() const {
-  if (size < kSmallest || size > kLargest) {
-    throw InputError(
-        fmt::format("lightmap size {} is not within {} to {} texels", size, kSmallest, kLargest));
-  }
-  if (!(crease >= 0 && crease <= 180)) {
-    throw InputError(fmt::format("crease {} is not within 0 to 180 degrees", crease));
-  }
-}
+void LightmapOptions::validate() const { requireRanges(*this); }
 
 namespace {
 

@@ -107,12 +107,12 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
   results_.scene = std::exchange(stored_.scene, std::nullopt);
   from_results_ = true;
   on_disk_.same_scene = true;
-  options_ = {meshOptionsOf(StageKey(stored_.mesh.key)),
-              factorOptionsOf(StageKey(stored_.factors.key)),
-              solveOptionsOf(StageKey(stored_.solution.key)),
-              gatherOptionsOf(StageKey(stored_.gathered.key)),
-              elementOptionsOf(StageKey(stored_.elements.key)),
-              heatOptionsOf(StageKey(stored_.heat.key)),
+  options_ = {optionsOf<MeshOptions>(StageKey(stored_.mesh.key)),
+              optionsOf<FormFactorOptions>(StageKey(stored_.factors.key)),
+              optionsOf<SolveOptions>(StageKey(stored_.solution.key)),
+              optionsOf<GatherOptions>(StageKey(stored_.gathered.key)),
+              optionsOf<ElementOptions>(StageKey(stored_.elements.key)),
+              optionsOf<HeatOptions>(StageKey(stored_.heat.key)),
               {},
               options_.journal,
               {}};

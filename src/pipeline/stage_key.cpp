@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <type_traits>
 
 #include "base/hash.h"
-#include "base/parse.h"
+#include "base/option_list.h"
 #include "radiosity/names.h"
 #include "radiosity/pipeline.h"
 
@@ -24,19 +22,6 @@ constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
 
 std::string onOff(bool value) { return value ? "on" : "off"; }
 
-template <class Number>
-void read(const StageKey& key, std::string_view name, Number& value) {
-  const std::optional<std::string> text = key.get(name);
-  if (!text) return;
-  if constexpr (std::is_same_v<Number, bool>) {
-    value = *text == "on";
-  } else {
-    Number parsed{};
-    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), parsed);
-    if (error == std::errc() && end == text->data() + text->size()) value = parsed;
-  }
-}
-
 std::string sourcesHash(std::span<const LightSource> sources) {
   Hash hash;
   for (const LightSource& source : sources) {
@@ -47,27 +32,17 @@ std::string sourcesHash(std::span<const LightSource> sources) {
   return hash.hex();
 }
 
-/// Reads an option from a key; leaves `value` as it is if the key does not name it.
-template <class Table, class Enum>
-void readNamed(const StageKey& key, std::string_view name, const Table& table, Enum& value) {
-  if (const auto found = named(table, key.get(name).value_or(""))) value = *found;
+template <class Options>
+bool hasIfChanged(std::string_view name) {
+  return std::ranges::any_of(optionLines(Options()), [&](const Option& option) {
+    return option.line.in_key == InKey::if_changed && option.line.optionName() == name;
+  });
 }
 
-/// True for options that are in a key only if they differ from the default: the command line does
-/// not have them, or did not always have them, and keys in older files must stay valid.
+/// True for options that a key lacks where they have their default.
 bool isNamedIfSet(std::string_view name) {
-  return name == "random-turns" || name == "inset" || name == "eye";
-}
-
-/// The default tolerance of form factors that serve only as sources.
-constexpr const char* kOfSources = "sources";
-
-void addTurns(StageKey& key, bool random_turns) {
-  if (!random_turns) key.add("random-turns", onOff(random_turns));
-}
-
-void addEye(StageKey& key, EyeChoice eye) {
-  if (eye != EyeChoice::cpu) key.add("eye", nameOf(kEyeNames, eye));
+  return hasIfChanged<FormFactorOptions>(name) || hasIfChanged<GatherOptions>(name) ||
+         hasIfChanged<HeatOptions>(name);
 }
 
 std::string sceneHash(const Scene& scene) {
@@ -170,11 +145,7 @@ std::string StageKey::difference(const StageKey& before, const StageKey& after) 
 }
 
 StageKey meshKey(const MeshOptions& options, const Scene& scene) {
-  StageKey key;
-  key.add("patches", fmt::format("{}", options.patches));
-  key.add("max-edge", fmt::format("{}", options.max_edge));
-  key.add("weld", fmt::format("{}", options.weld));
-  key.add("faces-as-patches", onOff(options.faces_as_patches));
+  StageKey key(keyText(options));
   key.add("scene", sceneHash(scene));
   return key;
 }
@@ -183,23 +154,9 @@ namespace {
 
 // The key has every option that the result may depend on, with its value as asked for: on another
 // mesh `auto` may pick another method.
-StageKey factorsKeyOf(const FormFactorOptions& options, const std::string& mesh_hash) {
-  StageKey key;
-  key.add("method", nameOf(kMethodNames, options.method));
-  const MethodTraits& method = traitsOf(options.method);
-  if (method.uses("tolerance")) {
-    const char* unasked = options.sources_only ? kOfSources : "default";
-    key.add("tolerance", options.tolerance ? fmt::format("{}", *options.tolerance) : unasked);
-  }
-  if (method.uses("closure")) key.add("closure", nameOf(kClosureNames, options.closure));
-  if (method.uses("seed")) key.add("seed", fmt::format("{}", options.seed));
-  if (method.uses("resolution")) key.add("resolution", fmt::format("{}", options.resolution));
-  if (method.uses("symmetrize")) key.add("symmetrize", onOff(options.symmetrize));
-  if (method.uses("near")) key.add("near", options.near_exact ? "exact" : "off");
-  if (method.uses("random-turns")) addTurns(key, options.random_turns);
-  if (method.uses("eye")) addEye(key, options.eye);
-  if (!options.exact_emitters) key.add("emitters", "estimated");
-  key.add("precision", nameOf(kPrecisionNames, options.storedPrecision()));
+StageKey factorsKeyOf(FormFactorOptions options, const std::string& mesh_hash) {
+  options.precision = options.storedPrecision();
+  StageKey key(keyText(options));
   key.add("mesh", mesh_hash);
   return key;
 }
@@ -211,17 +168,14 @@ StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
 }
 
 StageKey usedKey(const StageKey& factors_key, std::string_view method) {
-  FormFactorOptions options = factorOptionsOf(factors_key);
+  auto options = optionsOf<FormFactorOptions>(factors_key);
   options.method = named(kMethodNames, method).value_or(options.method);
   return factorsKeyOf(options, factors_key.get("mesh").value_or(""));
 }
 
 StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
                      const StageKey& factors_key) {
-  StageKey key;
-  key.add("solver", nameOf(kSolverNames, options.solver));
-  key.add("solve-tolerance", fmt::format("{}", options.tolerance));
-  key.add("max-iterations", fmt::format("{}", options.max_iterations));
+  StageKey key(keyText(options));
   key.add("materials", materialsHash(materials));
   key.add("sky", skyText(materials.sky));
   key.add("factors", keyHash(factors_key.text()));
@@ -230,10 +184,7 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
 
 StageKey basisKey(const SolveOptions& options, const PatchMaterials& materials,
                   std::span<const LightSource> sources, const StageKey& factors_key) {
-  StageKey key;
-  key.add("solver", nameOf(kSolverNames, options.solver));
-  key.add("solve-tolerance", fmt::format("{}", options.tolerance));
-  key.add("max-iterations", fmt::format("{}", options.max_iterations));
+  StageKey key(keyText(options));
   key.add("reflectance", reflectanceHash(materials));
   key.add("sources", sourcesHash(sources));
   key.add("factors", keyHash(factors_key.text()));
@@ -241,30 +192,14 @@ StageKey basisKey(const SolveOptions& options, const PatchMaterials& materials,
 }
 
 StageKey elementsKey(const ElementOptions& options, const std::string& solution_key) {
-  StageKey key;
-  key.add("element-tolerance", fmt::format("{}", options.tolerance));
-  key.add("smallest-edge", fmt::format("{}", options.smallest_edge));
-  key.add("most-vertices", fmt::format("{}", options.most_vertices));
-  key.add("rays", fmt::format("{}", options.rays));
-  key.add("most-rays", fmt::format("{}", options.most_rays));
-  key.add("crease", fmt::format("{}", options.crease));
-  key.add("seed", fmt::format("{}", options.seed));
+  StageKey key(keyText(options));
   key.add("solution", keyHash(solution_key));
   return key;
 }
 
 StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials,
                    const PatchMesh& mesh) {
-  StageKey key;
-  key.add("at", nameOf(kGatherAtNames, options.at));
-  key.add("passes", fmt::format("{}", options.passes));
-  key.add("gather-tolerance", fmt::format("{}", options.tolerance));
-  key.add("resolution", fmt::format("{}", options.resolution));
-  key.add("seed", fmt::format("{}", options.seed));
-  key.add("crease", fmt::format("{}", options.crease));
-  addTurns(key, options.random_turns);
-  addEye(key, options.eye);
-  if (options.inset != GatherOptions().inset) key.add("inset", fmt::format("{}", options.inset));
+  StageKey key(keyText(options));
   key.add("materials", materialsHash(materials));
   key.add("sky", skyText(materials.sky));
   key.add("mesh", geometryHash(mesh));
@@ -272,17 +207,6 @@ StageKey gatherKey(const GatherOptions& options, const PatchMaterials& materials
 }
 
 namespace {
-
-std::string listText(const std::vector<double>& values) {
-  return values.empty() ? "none" : fmt::format("{}", fmt::join(values, ","));
-}
-
-void readList(const StageKey& key, std::string_view name, std::vector<double>& values) {
-  const std::string text = key.get(name).value_or("none");
-  for (const std::string_view word : splitAt(text, ',')) {
-    if (const std::optional<double> value = parseNumber(word)) values.push_back(*value);
-  }
-}
 
 /// Hashes a value such that a missing one differs from every number.
 void addOptional(const std::optional<double>& value, Hash& hash) {
@@ -311,88 +235,16 @@ std::string conditionsHash(const HeatConditions& conditions) {
 
 StageKey heatKey(const HeatOptions& options, const HeatConditions& conditions,
                  const StageKey& factors_key) {
-  StageKey key;
-  key.add("sky-temperature", fmt::format("{}", options.sky_temperature));
-  key.add("band-edges", listText(options.bands.edges));
-  key.add("band-fractions", listText(options.bands.fractions));
-  key.add("heat-tolerance", fmt::format("{}", options.tolerance));
-  key.add("heat-iterations", fmt::format("{}", options.max_iterations));
-  if (options.sigma != kStefanBoltzmann) key.add("sigma", fmt::format("{}", options.sigma));
+  StageKey key(keyText(options));
   key.add("conditions", conditionsHash(conditions));
   key.add("factors", keyHash(factors_key.text()));
   return key;
 }
 
-MeshOptions meshOptionsOf(const StageKey& key) {
-  MeshOptions options;
-  read(key, "patches", options.patches);
-  read(key, "max-edge", options.max_edge);
-  read(key, "weld", options.weld);
-  read(key, "faces-as-patches", options.faces_as_patches);
-  return options;
-}
-
-FormFactorOptions factorOptionsOf(const StageKey& key) {
-  FormFactorOptions options;
-  readNamed(key, "method", kMethodNames, options.method);
-  double tolerance = 0;
-  read(key, "tolerance", tolerance);
-  if (tolerance > 0) options.tolerance = tolerance;
-  options.sources_only = key.get("tolerance") == kOfSources;
-  readNamed(key, "closure", kClosureNames, options.closure);
-  options.near_exact = key.get("near") == "exact";
-  options.exact_emitters = key.get("emitters") != "estimated";
-  read(key, "resolution", options.resolution);
-  read(key, "seed", options.seed);
-  read(key, "symmetrize", options.symmetrize);
-  read(key, "random-turns", options.random_turns);
-  readNamed(key, "eye", kEyeNames, options.eye);
-  options.precision = named(kPrecisionNames, key.get("precision").value_or(""));
-  return options;
-}
-
-SolveOptions solveOptionsOf(const StageKey& key) {
-  SolveOptions options;
-  readNamed(key, "solver", kSolverNames, options.solver);
-  read(key, "solve-tolerance", options.tolerance);
-  read(key, "max-iterations", options.max_iterations);
-  return options;
-}
-
-ElementOptions elementOptionsOf(const StageKey& key) {
-  ElementOptions options;
-  read(key, "element-tolerance", options.tolerance);
-  read(key, "smallest-edge", options.smallest_edge);
-  read(key, "most-vertices", options.most_vertices);
-  read(key, "rays", options.rays);
-  read(key, "most-rays", options.most_rays);
-  read(key, "crease", options.crease);
-  read(key, "seed", options.seed);
-  return options;
-}
-
-GatherOptions gatherOptionsOf(const StageKey& key) {
-  GatherOptions options;
-  readNamed(key, "at", kGatherAtNames, options.at);
-  read(key, "passes", options.passes);
-  read(key, "gather-tolerance", options.tolerance);
-  read(key, "resolution", options.resolution);
-  read(key, "seed", options.seed);
-  read(key, "crease", options.crease);
-  read(key, "random-turns", options.random_turns);
-  readNamed(key, "eye", kEyeNames, options.eye);
-  read(key, "inset", options.inset);
-  return options;
-}
-
-HeatOptions heatOptionsOf(const StageKey& key) {
-  HeatOptions options;
-  read(key, "sky-temperature", options.sky_temperature);
-  readList(key, "band-edges", options.bands.edges);
-  readList(key, "band-fractions", options.bands.fractions);
-  read(key, "heat-tolerance", options.tolerance);
-  read(key, "heat-iterations", options.max_iterations);
-  read(key, "sigma", options.sigma);
+template <>
+FormFactorOptions optionsOf(const StageKey& key) {
+  auto options = optionsIn<FormFactorOptions>(key.text());
+  options.sources_only = key.get("tolerance") == "sources";
   return options;
 }
 

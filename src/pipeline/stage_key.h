@@ -9,11 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/option_list.h"
 #include "radiosity/elements.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
 #include "radiosity/light_basis.h"
+#include "radiosity/names.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -69,11 +71,12 @@ std::string skyText(const std::vector<double>& sky);
 std::string keyHash(const std::string& key);
 
 /// The options in a key; defaults for those that it does not have.
-MeshOptions meshOptionsOf(const StageKey& key);
-FormFactorOptions factorOptionsOf(const StageKey& key);
-SolveOptions solveOptionsOf(const StageKey& key);
-ElementOptions elementOptionsOf(const StageKey& key);
-GatherOptions gatherOptionsOf(const StageKey& key);
-HeatOptions heatOptionsOf(const StageKey& key);
+template <class Options>
+Options optionsOf(const StageKey& key) {
+  return optionsIn<Options>(key.text());
+}
+/// With `sources_only`.
+template <>
+FormFactorOptions optionsOf(const StageKey& key);
 
 }  // namespace radiosity

@@ -14,31 +14,22 @@
 namespace radiosity::python {
 namespace {
 
-FormFactorOptions factorOptions(const py::dict& given) {
-  FormFactorOptions options;
-  const KeywordOptions take(given);
-  take.choice("method", kMethodNames, options.method);
-  take("tolerance", options.tolerance);
-  take.choice("closure", kClosureNames, options.closure);
-  Precision precision{};
-  take.choice("precision", kPrecisionNames, precision);
-  if (take.has("precision")) options.precision = precision;
-  take("resolution", options.resolution);
-  take("seed", options.seed);
-  take.choice("eye", kEyeNames, options.eye);
-  take("symmetrize", options.symmetrize);
-  take("near_exact", options.near_exact);
-  take("exact_emitters", options.exact_emitters);
-  take("memory_limit", options.memory_limit);
-  take("memory_held", options.memory_held);
-  take("scratch_folder", options.scratch_folder);
-  options.validate();
-  return options;
+/// Given options that the method does not use, and that are not what they are by default.
+std::vector<std::string> unusedOptions(const py::dict& given, const std::string& method) {
+  auto options = optionsFrom<FormFactorOptions>(given);
+  options.method = named(kMethodNames, method).value();
+  const py::list usual = described(FormFactorOptions());
+  std::vector<std::string> unused;
+  for (std::size_t k = 0; const py::handle& option : described(options)) {
+    const bool changed = !option["value"].equal(usual[k++]["value"]);
+    if (changed && !option["used"].cast<bool>()) unused.push_back(py::str(option["name"]));
+  }
+  return unused;
 }
 
 std::shared_ptr<FactorsHandle> formFactors(std::shared_ptr<MeshHandle> mesh, const py::dict& given,
                                            const py::object& report) {
-  FormFactorOptions options = factorOptions(given);
+  auto options = optionsFrom<FormFactorOptions>(given);
   auto handle = std::make_shared<FactorsHandle>();
   handle->mesh = std::move(mesh);
   handle->key = [options, mesh = handle->mesh] { return keyOfFactors(options, mesh->result.mesh); };
@@ -216,9 +207,7 @@ void bindFactors(py::module_& module) {
                              [](const H& h) { return h.factors.matrix.isSymmetric(); });
   type.def_property_readonly("report", [](const H& h) { return dictOf(h.factors.report); });
   module.def("form_factors", &formFactors);
-  module.def("options_of_method", [](const std::string& word) {
-    return traitsOf(named(kFactorsFromNames, word).value()).options;
-  });
+  module.def("unused_options", &unusedOptions);
   module.def("csr_arrays", &csrArrays);
   module.def("from_csr", &fromCsr);
   module.def("read_matrix", &readMatrix);

@@ -10,28 +10,13 @@
 namespace radiosity::python {
 namespace {
 
-GatherOptions gatherOptions(const py::dict& given) {
-  GatherOptions options;
-  const KeywordOptions take(given);
-  take.choice("at", kGatherAtNames, options.at);
-  take("passes", options.passes);
-  take("tolerance", options.tolerance);
-  take("resolution", options.resolution);
-  take("seed", options.seed);
-  take.choice("eye", kEyeNames, options.eye);
-  take("crease", options.crease);
-  take("inset", options.inset);
-  options.validate();
-  return options;
-}
-
 /// `reflectance`, `emission`: (N, bands).
 std::shared_ptr<GatheredHandle> gatherLight(std::shared_ptr<MeshHandle> mesh,
                                             const Array<double>& reflectance,
                                             const Array<double>& emission,
                                             const std::vector<double>& sky, const py::dict& given,
                                             const py::object& report) {
-  const GatherOptions options = gatherOptions(given);
+  const GatherOptions options = optionsFrom<GatherOptions>(given);
   auto handle = std::make_shared<GatheredHandle>();
   handle->mesh = std::move(mesh);
   const PatchMaterials materials{int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission),

@@ -34,12 +34,7 @@ using GivenMaterials = std::tuple<Array<double>, Array<double>, std::vector<doub
 std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factors,
                                            const std::optional<GivenMaterials>& given_materials,
                                            const py::dict& given, const py::object& report) {
-  SolveOptions options;
-  const KeywordOptions take(given);
-  take.choice("solver", kSolverNames, options.solver);
-  take("tolerance", options.tolerance);
-  take("max_iterations", options.max_iterations);
-  options.validate();
+  const auto options = optionsFrom<SolveOptions>(given);
   auto handle = std::make_shared<SolutionHandle>();
   handle->factors = std::move(factors);
   const FactorsHandle& of = *handle->factors;
@@ -67,18 +62,6 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
   return handle;
 }
 
-HeatOptions heatOptions(const py::dict& given) {
-  HeatOptions options;
-  const KeywordOptions take(given);
-  take("sky_temperature", options.sky_temperature);
-  take("tolerance", options.tolerance);
-  take("max_iterations", options.max_iterations);
-  take("band_edges", options.bands.edges);
-  take("band_fractions", options.bands.fractions);
-  options.validate();
-  return options;
-}
-
 /// The names of the rows of a matrix from elsewhere, empty for a row without one.
 std::vector<std::string> rowNames(const FactorsHandle& factors) {
   std::vector<std::string> names = factors.names;
@@ -101,7 +84,7 @@ std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
                                  const std::vector<std::string>& settings,
                                  const std::vector<std::string>& groups, const py::dict& given,
                                  const py::object& report) {
-  const HeatOptions options = heatOptions(given);
+  const HeatOptions options = optionsFrom<HeatOptions>(given);
   auto handle = std::make_shared<HeatHandle>();
   handle->factors = std::move(factors);
   const FactorsHandle& of = *handle->factors;
@@ -130,7 +113,7 @@ std::shared_ptr<HeatHandle> heatOfRows(std::shared_ptr<FactorsHandle> factors,
                                        const Array<double>& emissivity,
                                        const Array<double>& temperature, const Array<double>& flux,
                                        const py::dict& given, const py::object& report) {
-  const HeatOptions options = heatOptions(given);
+  const HeatOptions options = optionsFrom<HeatOptions>(given);
   auto handle = std::make_shared<HeatHandle>();
   handle->factors = std::move(factors);
   const FactorsHandle& of = *handle->factors;
@@ -245,11 +228,8 @@ py::array render(const MeshHandle& mesh, const SolutionHandle* light,
   RenderOptions options;
   ElementOptions element_options;
   bool with_elements = light != nullptr;
-  take("samples", options.samples);
-  take("smooth", options.smooth);
-  take("crease", options.crease);
+  RenderOptions::describe(take, options);
   take("crease", element_options.crease);
-  take("show_backs", options.show_backs);
   take("elements", with_elements);
   take("element_tolerance", element_options.tolerance);
   std::optional<Camera> camera = cameraOf(from, mesh.scene.get());

@@ -77,6 +77,16 @@ void save(const std::string& path, const FactorsHandle& factors, const SolutionH
   });
 }
 
+/// The options of a stage, a dict each: name, value by default, help.
+py::list optionsOf(const std::string& stage) {
+  if (stage == "mesh") return described(MeshOptions());
+  if (stage == "form_factors") return described(FormFactorOptions());
+  if (stage == "solve") return described(SolveOptions());
+  if (stage == "gather") return described(GatherOptions());
+  if (stage == "heat") return described(HeatOptions());
+  throw InputError("no stage has the name " + stage);
+}
+
 PyObject* exceptionType(py::module_& module, const char* name, PyObject* base, const char* text) {
   PyObject* type =
       PyErr_NewExceptionWithDoc(("radiosity." + std::string(name)).c_str(), text, base, nullptr);
@@ -114,6 +124,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("set_threads", [](const python::py::object& threads) {
     setThreads(python::valueOf<std::uint16_t>("threads", threads));
   });
+  module.def("options", &python::optionsOf);
   python::bindScene(module);
   python::bindFactors(module);
   python::bindLight(module);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "radiosity/names.h"
+#include "radiosity/option_line.h"
 #include "text.h"
 
 namespace radiosity::python {
@@ -76,11 +77,13 @@ class KeywordOptions {
   }
   template <class Value>
   void operator()(const char* name, std::optional<Value>& value) const {
-    if (has(name)) value = valueOf<Value>(called(name), given_[name]);
+    if (has(name)) (*this)(name, value.emplace());
   }
-  template <class Enum, std::size_t N>
-  void choice(const char* name, const NameTable<Enum, N>& table, Enum& value) const {
+  template <class Enum>
+    requires std::is_enum_v<Enum>
+  void operator()(const char* name, Enum& value) const {
     if (!has(name)) return;
+    const auto& table = tableOf(value);
     const std::string word = py::str(given_[name]);
     const std::optional<Enum> known = named(table, word);
     if (!known) {
@@ -88,6 +91,11 @@ class KeywordOptions {
           fmt::format("{}: '{}' is not one of {}", name, word, fmt::join(namesIn(table), ", ")));
     }
     value = *known;
+  }
+  /// As an element of an options struct's list.
+  template <class Value>
+  void operator()(const OptionLine& line, Value& value, const OptionRange& = {}) const {
+    (*this)(line.name, value);
   }
   bool has(const char* name) const { return given_.contains(name) && !given_[name].is_none(); }
 
@@ -97,5 +105,46 @@ class KeywordOptions {
   py::dict given_;
   std::string of_;
 };
+
+/// A value as Python has it: a word for an enum, None for none.
+template <class Value>
+py::object asPython(const Value& value) {
+  if constexpr (std::is_enum_v<Value>) {
+    return py::str(nameOf(tableOf(value), value));
+  } else {
+    return py::cast(value);
+  }
+}
+template <class Value>
+py::object asPython(const std::optional<Value>& value) {
+  return value ? asPython(*value) : py::none();
+}
+
+/// A dict an option of a struct: its name, value and help, and whether it is used beside the
+/// others.
+template <class Options>
+py::list described(const Options& options) {
+  py::list all;
+  const auto list = [&](const OptionLine& line, const auto& value, const OptionRange& range = {}) {
+    py::dict option;
+    option["name"] = line.name;
+    option["value"] = asPython(value);
+    option["help"] = line.helpText(range);
+    option["used"] = line.used;
+    all.append(option);
+  };
+  Options::describe(list, options);
+  return all;
+}
+
+/// The options of a struct from the arguments of a call, in range.
+template <class Options>
+Options optionsFrom(const py::dict& given) {
+  Options options;
+  const KeywordOptions take(given);
+  Options::describe(take, options);
+  options.validate();
+  return options;
+}
 
 }  // namespace radiosity::python

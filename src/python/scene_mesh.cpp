@@ -17,7 +17,7 @@ std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
   take("unit", options.unit);
   take("kd_is_srgb", options.kd_is_srgb);
   take("default_reflectance", options.default_reflectance);
-  take.choice("vertex_colours", kVertexColoursNames, options.vertex_colours);
+  take("vertex_colours", options.vertex_colours);
   take("textures", options.textures);
   take("set", options.set);
   take("materials_file", options.materials_file);
@@ -115,13 +115,7 @@ py::dict dictOf(const Camera& camera) {
 
 std::shared_ptr<MeshHandle> mesh(std::shared_ptr<Scene> scene, const py::dict& given,
                                  const py::object& report) {
-  MeshOptions options;
-  const KeywordOptions take(given);
-  take("patches", options.patches);
-  take("max_edge", options.max_edge);
-  take("weld", options.weld);
-  take("faces_as_patches", options.faces_as_patches);
-  options.validate();
+  const auto options = optionsFrom<MeshOptions>(given);
   auto handle = std::make_shared<MeshHandle>();
   handle->scene = std::move(scene);
   handle->key = [options, scene = handle->scene] { return keyOfMesh(options, *scene); };

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/luminance.h"
-#include "base/require_within.h"
+#include "base/option_list.h"
 #include "render/draw.h"
 
 namespace radiosity {
@@ -104,12 +104,7 @@ std::vector<double> radianceOf(std::span<const double> exitance) {
   return out;
 }
 
-void RenderOptions::validate() const {
-  requireWithin("width", width, 1, 16384, " pixels");
-  requireWithin("height", height, 1, 16384, " pixels");
-  requireWithin("samples", samples, 1, 16);
-  requireWithin("crease", crease, 0.0, 180.0, " degrees");
-}
+void RenderOptions::validate() const { requireRanges(*this); }
 
 PatchField makeField(const PatchMesh& mesh, std::span<const double> values, int bands,
                      const RenderOptions& options) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "base/option_list.h"
 #include "base/processor_clock.h"
 #include "solve/band_plan.h"
 #include "solve/cluster_solve.h"
@@ -91,14 +92,7 @@ void checkMaterials(std::span<const double> reflectance, std::span<const double>
   }
 }
 
-void SolveOptions::validate() const {
-  if (!(tolerance > 0 && tolerance < 1)) {
-    throw InputError(fmt::format("tolerance {} is not between 0 and 1", tolerance));
-  }
-  if (max_iterations < 1) {
-    throw InputError(fmt::format("max_iterations {} is not 1 or more", max_iterations));
-  }
-}
+void SolveOptions::validate() const { requireRanges(*this); }
 
 namespace {
 

@@ -366,7 +366,7 @@ class ExactFactors(CliTest):
 
     def test_options_of_other_methods_are_named(self):
         for method, given, named in [
-                ("exact", ["--resolution", "64", "--eye", "cpu", "--seed", "3"], "exact: --resolution, --eye, --seed"),
+                ("exact", ["--resolution", "64", "--eye", "cpu", "--seed", "3"], "exact: --seed, --resolution, --eye"),
                 ("rays", ["--seed", "3", "--symmetrize"], "rays: --symmetrize"),
                 ("hemicube", ["--seed", "3", "--resolution", "32", "--tolerance", "0.01"], "hemicube: --tolerance")]:
             run = self.run_program("factors", "box.obj", "--patches", "30", "--method", method, *given, "-o",

@@ -67,7 +67,7 @@ class LightmapCli(CliTest):
         self.refuse(*solve, *MAP, *glb, "--elements", "off", words=["leave out --elements off"])
         self.refuse(*solve, *glb, "--lightmap-size", "64", words=["add --lightmap FILE.exr"])
         self.refuse(*solve, *glb, "--lightmap", "map.exr", "--lightmap-size", "9999",
-                    words=["--lightmap-size: lightmap size 9999 is not within 16 to 4096 texels"])
+                    words=["--lightmap-size: 9999 texels is out of range; 16 to 4096"])
         self.refuse(*solve, *MAP, *glb, "--memory-limit", "100k",
                     words=["--lightmap-size 64: the map takes", "--memory-limit allows"])
         self.refuse("render", "box.obj", "--lightmap", "p.exr", "-o", "p.exr", *glb,

@@ -314,9 +314,9 @@ TEST(Lightmap, WrongInputIsRefused) {
   EXPECT_NO_THROW(LightmapOptions().validate());
   LitScene lit(dataScene("curved.obj"), 60, kCoarse);
   EXPECT_EQ(test::errorOf([&] { mapOf(lit, {.size = 5000}); }),
-            "lightmap size 5000 is not within 16 to 4096 texels");
+            "size: 5000 texels is out of range; 16 to 4096");
   EXPECT_EQ(test::errorOf([&] { mapOf(lit, {.crease = -1}); }),
-            "crease -1 is not within 0 to 180 degrees");
+            "crease: -1 degrees is out of range; 0 to 180");
   const std::string small = test::errorOf([&] { mapOf(lit, {.size = 16}); });
   EXPECT_NE(small.find("a lightmap of 16 x 16 texels has no room for "), std::string::npos)
       << small;

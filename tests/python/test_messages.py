@@ -188,7 +188,7 @@ def test_one_text_is_a_list_of_one():
     ({"tolerance": 1e-6, "method": "hemicube", "resolution": 16}, "hemicube: tolerance"),
     ({"closure": "off", "method": "hemicube", "resolution": 16}, "hemicube: closure"),
     ({"resolution": 64, "near_exact": True, "method": "rays", "tolerance": 0.1}, "rays: resolution, near_exact"),
-    ({"seed": 2, "eye": "gl", "method": "exact"}, "exact: eye, seed"),
+    ({"seed": 2, "eye": "gl", "method": "exact"}, "exact: seed, eye"),
 ])
 def test_options_of_other_methods_are_warned_of(plates, options, unused):
     with pytest.warns(UserWarning, match=f"^not used by the method {unused}$") as told:

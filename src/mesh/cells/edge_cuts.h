@@ -111,7 +111,4 @@ class EdgeCuts {
   std::vector<Vec3> edge_points_;
 };
 
-/// The most patches: indices and form factors of more could not be handled.
-inline constexpr double kMostPatches = 20e6;
-
 }  // namespace radiosity

@@ -16,6 +16,7 @@ from ._core import InputError
 from ._mesh import Mesh
 from ._names import surfaces_named
 from ._notes import tell, warn
+from ._options import more, takes_options
 from ._progress import Progress, reporting
 
 
@@ -255,12 +256,13 @@ def _resident_bytes() -> int:
         return 0
 
 
+@takes_options("form_factors")
 def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str = "auto",
                  closure: str = "report", precision: Optional[str] = None, resolution: int = 256,
                  eye: str = "cpu", seed: int = 1, near_exact: bool = False,
                  symmetrize: bool = False, exact_emitters: bool = True, memory_limit: int = 0,
                  scratch_folder: Union[str, "os.PathLike[str]"] = "",
-                 progress: Progress = None) -> FormFactors:
+                 progress: Progress = None, **others: Any) -> FormFactors:
     """Computes the form factors of a mesh.
 
     tolerance: relative to the mean form factor, 1e-12 to 0.1 (default: exact 1e-3, rays 1e-2).
@@ -289,23 +291,14 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
                    resolution=resolution, eye=eye, seed=seed, near_exact=near_exact,
                    symmetrize=symmetrize, exact_emitters=exact_emitters, memory_limit=memory_limit,
                    scratch_folder=path_text("scratch_folder", scratch_folder) if scratch_folder else "",
-                   memory_held=_resident_bytes() if memory_limit else 0)
+                   memory_held=_resident_bytes() if memory_limit else 0, **more("form_factors", others))
     with reporting(progress) as report:
         factors = FormFactors(_core.form_factors(mesh._handle, options, report), mesh)
     tell(factors.report["notes"])
-    unused = _unused(options, factors.method)
+    unused = _core.unused_options(options, factors.method)
     if unused:
         warn(f"not used by the method {factors.method}: {', '.join(unused)}")
     return factors
-
-
-def _unused(options: dict, method: str) -> List[str]:
-    """Options that are not what they are by default, and are of other methods than the one that ran."""
-    usual: dict = {"tolerance": None, "closure": "report", "resolution": 256, "eye": "cpu", "near_exact": False,
-                   "symmetrize": False, "seed": 1}
-    used = _core.options_of_method(method)
-    return [name for name in usual
-            if options[name] != usual[name] and name.replace("near_exact", "near") not in used]
 
 
 def _checked(matrix: Any) -> Any:

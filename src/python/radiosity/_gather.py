@@ -11,6 +11,7 @@ from ._arrays import Fixed, require
 from ._light import materials_of
 from ._mesh import Mesh
 from ._notes import tell, warn
+from ._options import more, takes_options
 from ._progress import Progress, reporting
 
 MOST_PASSES = 100  # unless the caller asks for fewer
@@ -80,10 +81,11 @@ class Gathered(Fixed):
         return f"<Gathered of {len(summary['passes'])} passes, {summary['status']}>"
 
 
+@takes_options("gather")
 def gather(mesh: Mesh, reflectance: Any = None, emission: Any = None, *, sky: Any = None,
            at: str = "vertices", passes: int = MOST_PASSES, tolerance: float = 1e-4, resolution: int = 256,
            eye: str = "cpu", seed: int = 1, crease: float = 30.0, inset: float = 0.1,
-           progress: Progress = None) -> Gathered:
+           progress: Progress = None, **others: Any) -> Gathered:
     """Gathers light on a mesh of N patches: pass k adds the k-th bounce. No matrix is stored.
 
     reflectance, emission, sky: as solve() takes them, by patch; default: the scene's. at: vertices
@@ -107,7 +109,7 @@ def gather(mesh: Mesh, reflectance: Any = None, emission: Any = None, *, sky: An
     require("mesh", mesh, Mesh, "a Mesh: rad.mesh(scene)")
     light = materials_of(mesh, len(mesh), f"N = {len(mesh)}", reflectance, emission, sky)
     options = dict(at=at, passes=passes, tolerance=tolerance, resolution=resolution, eye=eye, seed=seed,
-                   crease=crease, inset=inset)
+                   crease=crease, inset=inset, **more("gather", others))
     with reporting(progress) as report:
         handle = _core.gather(mesh._handle, light.reflectance, light.emission, light.sky, options, report)
     summary = handle.summary

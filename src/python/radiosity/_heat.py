@@ -12,6 +12,7 @@ from ._arrays import Fixed, numbers, path_text, require, texts, yes_or_no
 from ._core import InputError
 from ._factors import FormFactors
 from ._notes import warn
+from ._options import more, takes_options
 from ._progress import Progress, reporting
 
 #: One value for all surfaces, or values by name.
@@ -136,12 +137,13 @@ def _of_rows(F: FormFactors, name: str, value: Optional[Any], other: float) -> n
     return numbers(name, [np.nan if v is None else v for v in of_rows], [(len(F),)], nan=True)
 
 
+@takes_options("heat")
 def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flux: Any = None,
          power: Any = None, convection: Any = None, ambient: Any = None, isothermal: Any = None,
          table: Union[None, str, "os.PathLike[str]"] = None,
          groups: Union[str, Sequence[str]] = (), sky_temperature: float = 0.0,
          band_edges: Sequence[float] = (), band_fractions: Sequence[float] = (),
-         tolerance: float = 1e-9, max_iterations: int = 100, progress: Progress = None) -> Heat:
+         tolerance: float = 1e-9, max_iterations: int = 100, progress: Progress = None, **others: Any) -> Heat:
     """Exchanges heat by radiation, with what each surface is given.
 
     Each condition is a dict by the name of a surface, material or object, or one value for all that
@@ -175,7 +177,8 @@ def heat(F: FormFactors, emissivity: Any = None, temperature: Any = None, *, flu
     options = dict(sky_temperature=sky_temperature, tolerance=tolerance,
                    max_iterations=max_iterations,
                    band_edges=numbers("band_edges", band_edges, [(None,)]).tolist(),
-                   band_fractions=numbers("band_fractions", band_fractions, [(None,)]).tolist())
+                   band_fractions=numbers("band_fractions", band_fractions, [(None,)]).tolist(),
+                   **more("heat", others))
     conditions = dict(emissivity=emissivity, temperature=temperature, flux=flux, power=power,
                       convection=convection, ambient=ambient, isothermal=isothermal)
     by = _heat_of_rows if F.mesh is None and _has_arrays(conditions) else _heat_by_name

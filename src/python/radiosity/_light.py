@@ -12,6 +12,7 @@ from ._core import InputError, RunError
 from ._factors import FormFactors
 from ._mesh import Mesh
 from ._notes import warn
+from ._options import more, takes_options
 from ._progress import Progress, reporting
 
 
@@ -132,9 +133,10 @@ def _meaning_of_rows(F: FormFactors) -> str:
             "rows become those of patches by values[mesh.cluster]")
 
 
+@takes_options("solve")
 def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky: Any = None,
           solver: str = "auto", tolerance: float = 1e-6, max_iterations: int = 10000,
-          progress: Progress = None) -> Solution:
+          progress: Progress = None, **others: Any) -> Solution:
     """Solves for the light on N patches (or rows of a matrix), every band in one pass.
 
     emission: radiant exitance, W/m^2, (N,), (N, bands) or, for k lamps at once, (N, bands, k);
@@ -162,7 +164,7 @@ def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky:
         materials, shape = (given.reflectance, given.emission, given.sky), given.shape
     else:
         F.mesh._require_scene()
-    options = dict(solver=solver, tolerance=tolerance, max_iterations=max_iterations)
+    options = dict(solver=solver, tolerance=tolerance, max_iterations=max_iterations, **more("solve", others))
     with reporting(progress) as report:
         handle = _core.solve(F._handle, materials, options, report)
     if not handle.usable:

@@ -12,6 +12,7 @@ from ._arrays import Fixed, numbers, require
 from ._core import InputError
 from ._names import surfaces_named
 from ._notes import tell
+from ._options import more, takes_options
 from ._progress import Progress, reporting
 from ._scene import Scene
 
@@ -209,8 +210,9 @@ class Mesh(Fixed):
         return f"<Mesh of {len(self):,} patches{rows} on {len(self.surface_names)} surfaces>"
 
 
+@takes_options("mesh")
 def mesh(scene: Scene, patches: int = 2000, *, max_edge: float = 0.0, weld: float = 1e-7,
-         faces_as_patches: bool = False, progress: Progress = None) -> Mesh:
+         faces_as_patches: bool = False, progress: Progress = None, **others: Any) -> Mesh:
     """Cuts the scene into about `patches` patches.
 
     max_edge: metres, the longest patch edge (0: derived from `patches`). weld: coincidence, as a
@@ -224,7 +226,8 @@ def mesh(scene: Scene, patches: int = 2000, *, max_edge: float = 0.0, weld: floa
     <Mesh of 24 patches on 6 surfaces>
     """
     require("scene", scene, Scene, "a Scene: rad.load(path) or rad.Scene(...)")
-    options = dict(patches=patches, max_edge=max_edge, weld=weld, faces_as_patches=faces_as_patches)
+    options = dict(patches=patches, max_edge=max_edge, weld=weld, faces_as_patches=faces_as_patches,
+                   **more("mesh", others))
     with reporting(progress) as report:
         mesh = Mesh(_core.mesh(scene._handle, options, report))
     tell(mesh.report["notes"])

@@ -1,0 +1,35 @@
+"""Options of the library's lists that the signature of a function does not name."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, Callable, TypeVar
+
+from . import _core
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def takes_options(stage: str) -> Callable[[Function], Function]:
+    """For a function with `**more`: its signature and documentation name what more() takes."""
+    def documented(function: Function) -> Function:
+        signature = inspect.signature(function)
+        given = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
+        names = {p.name for p in given}
+        others = [option for option in _core.options(stage) if option["help"] and option["name"] not in names]
+        added = [inspect.Parameter(option["name"], inspect.Parameter.KEYWORD_ONLY, default=option["value"],
+                                   annotation=type(option["value"]).__name__) for option in others]
+        function.__signature__ = signature.replace(parameters=given + added)  # type: ignore[attr-defined]
+        function.__doc__ = (function.__doc__ or "") + "".join(
+            f"\n    {option['name']}: {option['help']}." for option in others)
+        return function
+    return documented
+
+
+def more(stage: str, given: dict) -> dict:
+    """`given`, what a function found in its `**more`. TypeError for what is no option of the stage."""
+    known = {option["name"] for option in _core.options(stage) if option["help"]}
+    for name in given:
+        if name not in known:
+            raise TypeError(f"{stage}() got an unexpected keyword argument {name!r}")
+    return given
