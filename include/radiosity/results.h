@@ -32,10 +32,12 @@ struct Keyed {
   std::string key;
 
   explicit operator bool() const { return value.has_value(); }
+  // The value must be there. NOLINTBEGIN(bugprone-unchecked-optional-access)
   T& operator*() { return *value; }
   const T& operator*() const { return *value; }
   T* operator->() { return &*value; }
   const T* operator->() const { return &*value; }
+  // NOLINTEND(bugprone-unchecked-optional-access)
 };
 
 /// The contents of a results file; an absent stage was not computed or was dropped.

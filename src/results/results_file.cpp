@@ -71,7 +71,7 @@ class StageWriter {
     scene();
     factors_ = factors;
     put_matrix_ = put_matrix;
-    forEachStage([this](const auto& stage) { write(stage); });
+    forEachStage([this](const auto& stage) { this->write(stage); });
   }
   void scene() {
     if (!results_.scene) return;
@@ -258,9 +258,11 @@ Results readAtOnce(const std::string& path, bool with_factors,
   if (results.mesh && geometryHash(results.mesh->mesh) != stages.geometryHash()) {
     file.fail("/mesh/geometry_hash", "is not that of /mesh: another program changed the patches");
   }
-  if (results.mesh && results.mesh->mesh.clusters) {
+  if (results.mesh) {
     std::optional<PatchClusters>& clusters = results.mesh->mesh.clusters;
-    clusters = clustersOf(std::move(clusters->of_patch), unknownsOf(results.mesh->mesh));
+    if (clusters) {
+      clusters = clustersOf(std::move(clusters->of_patch), unknownsOf(results.mesh->mesh));
+    }
   }
   return results;
 }
