@@ -1,8 +1,23 @@
 // Light of single lamps: from form factors and reflectance.
+#include "base/hash.h"
 #include "pipeline/stages/get_or_make.h"
 #include "solve/linear_solve.h"
 
 namespace radiosity {
+
+namespace {
+
+std::string sourcesHash(std::span<const LightSource> sources) {
+  Hash hash;
+  for (const LightSource& source : sources) {
+    hash.text(source.name);
+    hash.array(source.emission);
+    hash.array(source.sky);
+  }
+  return hash.hex();
+}
+
+}  // namespace
 
 /// Throws an InputError unchanged: the fault is in the sources.
 const LightBasis& Pipeline::basis() {
@@ -15,7 +30,10 @@ const LightBasis& Pipeline::basis() {
   const PatchMesh& patches = made(results_.mesh).mesh;
   const std::vector<LightSource> sources =
       options_.sources.empty() ? lightSources(materials, patches) : options_.sources;
-  const StageKey key = basisKey(options_.solve, materials, sources, usedFactorsKey());
+  StageKey key(keyText(options_.solve));
+  key.add("reflectance", reflectanceHash(materials));
+  key.add("sources", sourcesHash(sources));  // with the emission
+  key.add("factors", keyHash(usedFactorsKey().text()));
   return getOrMake(kStage<Stage::basis>, key, [&] {
     const FormFactors& factors = made(results_.factors);
     requireSolver(options_.solve.solver, factors.matrix);

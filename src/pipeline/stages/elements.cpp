@@ -6,7 +6,9 @@ namespace radiosity {
 /// The key that elements must have now. Call it after solution().
 StageKey Pipeline::elementsKeyNow() const {
   options_.elements.validate();
-  return elementsKey(options_.elements, results_.solution.key);
+  StageKey key(keyText(options_.elements));
+  key.add("solution", keyHash(results_.solution.key));
+  return key;
 }
 
 /// Computes elements of some patches; they are not kept. If the file has elements, their key does

@@ -1,5 +1,4 @@
-// Form factors: from the mesh. By which method, a plan decides; rows of an earlier run may be
-// there.
+// Form factors: from the mesh. By which method, a plan decides; earlier runs may have left rows.
 #include <algorithm>
 
 #include "base/process_memory.h"
@@ -18,7 +17,33 @@ namespace {
 /// thread stacks. (Without it the estimate was 3 to 9 MiB short in 15 of 17 runs.)
 constexpr std::size_t kLoadedLater = std::size_t(5) << 20;
 
+// The key has every option that the result may depend on, with its value as asked for: on another
+// mesh `auto` may pick another method.
+StageKey factorsKeyOf(FormFactorOptions options, const std::string& mesh_hash) {
+  options.precision = options.storedPrecision();
+  StageKey key(keyText(options));
+  key.add("mesh", mesh_hash);
+  return key;
+}
+
 }  // namespace
+
+StageKey factorsKey(const FormFactorOptions& options, const PatchMesh& mesh) {
+  return factorsKeyOf(options, geometryHash(mesh));
+}
+
+StageKey usedKey(const StageKey& factors_key, std::string_view method) {
+  auto options = optionsOf<FormFactorOptions>(factors_key);
+  options.method = named(kMethodNames, method).value_or(options.method);
+  return factorsKeyOf(options, factors_key.get("mesh").value_or(""));
+}
+
+template <>
+FormFactorOptions optionsOf(const StageKey& key) {
+  auto options = optionsIn<FormFactorOptions>(key.text());
+  options.sources_only = key.get("tolerance") == "sources";
+  return options;
+}
 
 /// Whether form factors are there as asked for; options that their method does not use may differ.
 /// Sets `plan` if a plan is needed to decide.
@@ -123,6 +148,10 @@ StageKey Pipeline::usedFactorsKey() const {
   if (!results_.factors) return {};
   return usedKey(StageKey(results_.factors.key),
                  nameOf(kFactorsFromNames, results_.factors->method));
+}
+
+std::string keyOfFactors(const FormFactorOptions& options, const PatchMesh& mesh) {
+  return factorsKey(options, mesh).text();
 }
 
 }  // namespace radiosity

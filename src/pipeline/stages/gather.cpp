@@ -7,7 +7,11 @@ const Gathered& Pipeline::gathered() {
   const PatchMesh& patches = mesh().mesh;
   options_.gather.validate();
   const PatchMaterials& materials = materialsOfMesh();
-  return getOrMake(kStage<Stage::gather>, gatherKey(options_.gather, materials, patches), [&] {
+  StageKey key(keyText(options_.gather));
+  key.add("materials", materialsHash(materials));
+  key.add("sky", skyText(materials.sky));
+  key.add("mesh", geometryHash(patches));
+  return getOrMake(kStage<Stage::gather>, key, [&] {
     return computedStage("gathering",
                          [&] { return gather(patches, materials, options_.gather, progress_); });
   });

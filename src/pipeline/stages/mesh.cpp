@@ -1,8 +1,36 @@
 // The mesh: from the scene alone.
+#include "base/hash.h"
 #include "base/processes.h"
 #include "pipeline/stages/get_or_make.h"
 
 namespace radiosity {
+
+namespace {
+
+/// Has all properties of the scene that meshing uses: vertices, faces, surfaces with their sides,
+/// and which surfaces emit (an emitter wins a coplanar overlap).
+std::string sceneHash(const Scene& scene) {
+  Hash hash;
+  hash.array(scene.vertices);
+  hash.array(scene.face_offset);
+  hash.array(scene.corners);
+  hash.array(scene.face_surface);
+  for (const Surface& surface : scene.surfaces) {
+    hash.text(surface.name);
+    const Material& material = scene.materials[surface.material];
+    const bool emits = material.emission != Vec3(0.0);
+    hash.text(onOff(material.two_sided) + onOff(emits));
+  }
+  return hash.hex();
+}
+
+StageKey meshKey(const MeshOptions& options, const Scene& scene) {
+  StageKey key(keyText(options));
+  key.add("scene", sceneHash(scene));
+  return key;
+}
+
+}  // namespace
 
 const MeshResult& Pipeline::mesh() {
   options_.mesh.validate();
@@ -27,6 +55,10 @@ const MeshResult& Pipeline::mesh() {
     }
     return meshScene(scene(), options_.mesh, progress_);
   });
+}
+
+std::string keyOfMesh(const MeshOptions& options, const Scene& scene) {
+  return meshKey(options, scene).text();
 }
 
 }  // namespace radiosity

@@ -4,6 +4,20 @@
 
 namespace radiosity {
 
+namespace {
+
+/// `factors_key`: a key that usedKey() returned.
+StageKey solutionKey(const SolveOptions& options, const PatchMaterials& materials,
+                     const StageKey& factors_key) {
+  StageKey key(keyText(options));
+  key.add("materials", materialsHash(materials));
+  key.add("sky", skyText(materials.sky));
+  key.add("factors", keyHash(factors_key.text()));
+  return key;
+}
+
+}  // namespace
+
 const PatchMaterials& Pipeline::materialsOfMesh() {
   if (!results_.materials) results_.materials = patchMaterials(scene(), made(results_.mesh).mesh);
   return made(results_.materials);
@@ -26,6 +40,11 @@ const Solution& Pipeline::solution() {
                    progress_);
     });
   });
+}
+
+std::string keyOfSolution(const SolveOptions& options, const PatchMaterials& materials,
+                          const std::string& factors_key, const std::string& method) {
+  return solutionKey(options, materials, usedKey(StageKey(factors_key), method)).text();
 }
 
 }  // namespace radiosity
