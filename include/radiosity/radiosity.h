@@ -6,7 +6,6 @@
 #include "radiosity/compare.h"
 #include "radiosity/elements.h"
 #include "radiosity/exchange_matrix.h"
-#include "radiosity/form_factor_kernel.h"
 #include "radiosity/form_factor_method.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
