@@ -7,9 +7,9 @@
 #include <unordered_map>
 
 #include "elements/emitter_aim.h"
-#include "formfactor/exact/flat_polygon.h"
-#include "formfactor/exact/point_to_polygon.h"
 #include "formfactor/rays/sobol.h"
+#include "visibility/clipping/flat_polygon.h"
+#include "visibility/clipping/point_to_polygon.h"
 
 namespace radiosity {
 namespace {

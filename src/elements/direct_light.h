@@ -7,14 +7,14 @@
 
 #include "elements/emitters.h"
 #include "elements/field_builder.h"
-#include "formfactor/exact/clip_kernels.h"
-#include "formfactor/exact/elements/elements.h"
-#include "formfactor/exact/occluded/visible_part.h"
-#include "formfactor/exact/occluders/occluders.h"
-#include "formfactor/exact/visibility/kernels.h"
-#include "formfactor/exact/visibility/tree.h"
 #include "formfactor/rays/point_rays.h"
 #include "radiosity/elements.h"
+#include "visibility/clipping/clip_kernels.h"
+#include "visibility/clipping/visible_part.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
+#include "visibility/shadows/kernels.h"
+#include "visibility/shadows/tree.h"
 
 namespace radiosity {
 

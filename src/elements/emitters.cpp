@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/geometry/plane_frame.h"
-#include "formfactor/exact/elements/convex_pieces.h"
+#include "visibility/elements/convex_pieces.h"
 
 namespace radiosity {
 namespace {

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/exact/elements/elements.h"
-#include "formfactor/exact/visibility/shadow.h"
 #include "radiosity/patch_mesh.h"
+#include "visibility/elements/elements.h"
+#include "visibility/shadows/shadow.h"
 
 namespace radiosity {
 

@@ -12,10 +12,10 @@
 #include "elements/indirect_sources.h"
 #include "elements/source_map.h"
 #include "elements/surface_points.h"
-#include "formfactor/exact/elements/elements.h"
-#include "formfactor/exact/occluders/occluders.h"
 #include "formfactor/rays/point_rays.h"
 #include "radiosity/elements.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "formfactor/exact/flat_polygon.h"
-#include "formfactor/exact/point_to_polygon.h"
 #include "radiosity/elements.h"
 #include "support/scene_builder.h"
+#include "visibility/clipping/flat_polygon.h"
+#include "visibility/clipping/point_to_polygon.h"
 
 namespace radiosity {
 namespace {

@@ -10,10 +10,10 @@
 #include <random>
 #include <thread>
 
-#include "formfactor/exact/elements/elements.h"
-#include "formfactor/exact/occluders/occluders.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 namespace {

@@ -9,12 +9,12 @@
 #include <random>
 
 #include "base/aligned_buffer.h"
-#include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/error_model.h"
 #include "formfactor/exact/occluded/target_rows.h"
-#include "formfactor/exact/occluded/visible_part.h"
 #include "occluder_builder.h"
 #include "support/simd_targets.h"
+#include "visibility/clipping/clip_kernels.h"
+#include "visibility/clipping/visible_part.h"
 
 namespace radiosity {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include "formfactor/exact/convex_polygon.h"
-#include "formfactor/exact/occluded/silhouette.h"
-#include "formfactor/exact/occluded/visible_part.h"
 #include "occluder_builder.h"
+#include "visibility/clipping/convex_polygon.h"
+#include "visibility/clipping/silhouette.h"
+#include "visibility/clipping/visible_part.h"
 
 namespace radiosity {
 namespace {

@@ -8,10 +8,10 @@
 #include <numbers>
 #include <string>
 
-#include "formfactor/exact/point_to_polygon.h"
 #include "formfactor/exact/unoccluded/contour.h"
 #include "formfactor/exact/unoccluded/unoccluded.h"
 #include "support/mesh_builder.h"
+#include "visibility/clipping/point_to_polygon.h"
 
 namespace radiosity {
 namespace {

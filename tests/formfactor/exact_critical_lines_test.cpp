@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "formfactor/exact/occluded/critical_lines.h"
-#include "formfactor/exact/occluded/visible_part.h"
 #include "occluder_builder.h"
+#include "visibility/clipping/visible_part.h"
 
 namespace radiosity {
 namespace {

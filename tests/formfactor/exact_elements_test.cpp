@@ -6,9 +6,9 @@
 #include <numeric>
 #include <random>
 
-#include "formfactor/exact/elements/convex_pieces.h"
-#include "formfactor/exact/elements/elements.h"
 #include "support/mesh_builder.h"
+#include "visibility/elements/convex_pieces.h"
+#include "visibility/elements/elements.h"
 
 namespace radiosity {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "formfactor/exact/visibility/tree.h"
 #include "occluder_builder.h"
+#include "visibility/shadows/tree.h"
 
 namespace radiosity {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "exact_scenes.h"
-#include "formfactor/exact/occluders/hull.h"
-#include "formfactor/exact/occluders/occluders.h"
+#include "visibility/occluders/hull.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 namespace {

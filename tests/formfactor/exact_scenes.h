@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "formfactor/exact/elements/elements.h"
-#include "formfactor/exact/occluders/occluders.h"
 #include "radiosity/patch_mesh.h"
 #include "radiosity/scene.h"
 #include "support/scene_builder.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity::test {
 

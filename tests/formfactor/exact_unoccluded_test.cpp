@@ -7,9 +7,9 @@
 
 #include "contour_reference.h"
 #include "element_pairs.h"
-#include "formfactor/exact/flat_polygon.h"
 #include "formfactor/exact/unoccluded/unoccluded.h"
 #include "support/mesh_builder.h"
+#include "visibility/clipping/flat_polygon.h"
 
 namespace radiosity {
 namespace {

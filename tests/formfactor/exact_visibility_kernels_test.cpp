@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "formfactor/exact/visibility/kernels.h"
 #include "support/simd_targets.h"
+#include "visibility/shadows/kernels.h"
 
 namespace radiosity {
 namespace {

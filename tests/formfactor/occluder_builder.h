@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "formfactor/exact/occluders/occluders.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity::test {
 

@@ -8,8 +8,9 @@
 
 namespace radiosity {
 
-// There are two other clippers: exact/convex_polygon.h cuts a piece into both of its parts at once
-// and records the origin of each edge; exact/clip_polygons-inl.h clips a polygon in every lane.
+// There are two other clippers in visibility/clipping: convex_polygon.h cuts a piece into both of
+// its parts at once and records the origin of each edge; clip_polygons-inl.h clips a polygon in
+// every lane.
 
 /// Calls keep(corner) for the corners, in order, of the part of a loop where side(p) >= 0
 /// (Sutherland & Hodgman 1974). `side` is affine; between(a, b, side(a), side(b)) is the point of

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
-#include "formfactor/exact/convex_polygon.h"
+#include "visibility/clipping/convex_polygon.h"
 
 namespace radiosity {
 namespace {

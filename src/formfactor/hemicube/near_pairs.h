@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "formfactor/exact/elements/elements.h"
 #include "formfactor/exact/unoccluded/unoccluded.h"
 #include "formfactor/hemicube/row_builder.h"
+#include "visibility/elements/elements.h"
 
 namespace radiosity {
 

@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/occluded/batch_visibility.h"
 #include "formfactor/exact/occluded/cell_rule.h"
+#include "visibility/clipping/clip_kernels.h"
 
 namespace radiosity::bench {
 

@@ -18,7 +18,6 @@
 #include "formfactor/exact/assembly/row_sample.h"
 #include "formfactor/exact/assembly/shared_tasks.h"
 #include "formfactor/exact/assembly/task_journal.h"
-#include "formfactor/exact/clip_kernels.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/dealt_rows.h"
 #include "matrix/shared_rows.h"
@@ -26,6 +25,7 @@
 #include "mesh/patches/enclosures.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
+#include "visibility/clipping/clip_kernels.h"
 
 namespace radiosity {
 namespace {

@@ -3,13 +3,13 @@
 
 #include "formfactor/exact/assembly/row_assembly.h"
 #include "formfactor/exact/assembly/row_tasks.h"
-#include "formfactor/exact/elements/elements.h"
 #include "formfactor/exact/occluded/occluded_pairs.h"
-#include "formfactor/exact/occluders/occluders.h"
 #include "formfactor/exact/unoccluded/unoccluded.h"
 #include "formfactor/exact/visibility/visibility.h"
 #include "formfactor/row_memory.h"
 #include "radiosity/form_factors.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/exact/elements/elements.h"
 #include "formfactor/exact/occluded/occluded_pairs.h"
 #include "formfactor/exact/visibility/visibility.h"
+#include "visibility/elements/elements.h"
 
 namespace radiosity {
 

@@ -9,13 +9,13 @@
 #include "formfactor/exact/assembly/error_figure.h"
 #include "formfactor/exact/assembly/recorded_pairs.h"
 #include "formfactor/exact/assembly/row_tasks.h"
-#include "formfactor/exact/elements/elements.h"
 #include "formfactor/exact/occluded/occluded_pairs.h"
 #include "formfactor/exact/unoccluded/unoccluded.h"
 #include "formfactor/exact/visibility/visibility.h"
 #include "formfactor/row_accounts.h"
 #include "radiosity/closure.h"
 #include "radiosity/exchange_matrix.h"
+#include "visibility/elements/elements.h"
 
 namespace radiosity {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/exact/elements/elements.h"
+#include "visibility/elements/elements.h"
 
 namespace radiosity {
 

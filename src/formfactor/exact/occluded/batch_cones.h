@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/aligned_buffer.h"
-#include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/occluded/cell_rule.h"
-#include "formfactor/exact/occluded/visible_part.h"
+#include "visibility/clipping/clip_kernels.h"
+#include "visibility/clipping/visible_part.h"
 
 namespace radiosity {
 

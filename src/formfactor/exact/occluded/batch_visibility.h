@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "base/aligned_buffer.h"
-#include "formfactor/exact/clip_kernels.h"
 #include "formfactor/exact/occluded/batch_cones.h"
 #include "formfactor/exact/occluded/cell_rule.h"
 #include "formfactor/exact/occluded/target_rows.h"
-#include "formfactor/exact/occluded/visible_part.h"
 #include "formfactor/exact/occluded/visible_pieces.h"
+#include "visibility/clipping/clip_kernels.h"
+#include "visibility/clipping/visible_part.h"
 
 namespace radiosity {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/geometry/plane_frame.h"
-#include "formfactor/exact/occluded/visible_part.h"
+#include "visibility/clipping/visible_part.h"
 
 namespace radiosity {
 

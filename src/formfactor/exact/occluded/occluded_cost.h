@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "formfactor/exact/elements/elements.h"
 #include "formfactor/exact/occluded/occluded_pairs.h"
-#include "formfactor/exact/occluders/occluders.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 

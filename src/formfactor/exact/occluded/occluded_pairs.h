@@ -3,10 +3,10 @@
 
 #include <span>
 
-#include "formfactor/exact/clip_kernels.h"
-#include "formfactor/exact/elements/elements.h"
 #include "formfactor/exact/occluded/pair_sampling.h"
-#include "formfactor/exact/occluders/occluders.h"
+#include "visibility/clipping/clip_kernels.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 

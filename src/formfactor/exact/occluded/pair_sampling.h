@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/exact/elements/elements.h"
 #include "formfactor/exact/occluded/shadow_change.h"
-#include "formfactor/exact/occluded/visible_part.h"
-#include "formfactor/exact/occluders/occluders.h"
+#include "visibility/clipping/visible_part.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 

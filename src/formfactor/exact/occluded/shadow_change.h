@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/geometry/plane_frame.h"
-#include "formfactor/exact/elements/elements.h"
-#include "formfactor/exact/occluders/occluders.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
 
 namespace radiosity {
 

@@ -6,8 +6,8 @@
 
 #include "base/aligned_buffer.h"
 #include "base/geometry/plane_frame.h"
-#include "formfactor/exact/clip_kernels.h"
-#include "formfactor/exact/occluded/visible_part.h"
+#include "visibility/clipping/clip_kernels.h"
+#include "visibility/clipping/visible_part.h"
 
 namespace radiosity {
 

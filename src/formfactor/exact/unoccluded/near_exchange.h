@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "formfactor/exact/clip_kernels.h"
 #include "radiosity/base.h"
+#include "visibility/clipping/clip_kernels.h"
 
 namespace radiosity {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/geometry/plane_frame.h"
-#include "formfactor/exact/flat_polygon.h"
 #include "formfactor/exact/unoccluded/far_kernels.h"
 #include "formfactor/exact/unoccluded/near_exchange.h"
+#include "visibility/clipping/flat_polygon.h"
 
 namespace radiosity {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "formfactor/exact/elements/elements.h"
+#include "visibility/elements/elements.h"
 
 namespace radiosity {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "formfactor/exact/elements/elements.h"
-#include "formfactor/exact/occluders/occluders.h"
-#include "formfactor/exact/visibility/shadow.h"
-#include "formfactor/exact/visibility/tree.h"
+#include "visibility/elements/elements.h"
+#include "visibility/occluders/occluders.h"
+#include "visibility/shadows/shadow.h"
+#include "visibility/shadows/tree.h"
 
 namespace radiosity {
 
