@@ -9,6 +9,17 @@
 
 namespace radiosity {
 
+namespace {
+
+/// Whole numbers have all their digits.
+std::string boundText(double bound) {
+  constexpr double kMostDigits = 1e9;
+  const bool whole = bound == std::trunc(bound) && std::abs(bound) < kMostDigits;
+  return whole ? fmt::format("{:.0f}", bound) : fmt::format("{:g}", bound);
+}
+
+}  // namespace
+
 bool OptionRange::has(double value) const {
   // A bound that is not given is NaN, and no number is beyond it.
   if (!std::isfinite(value) || value < from || value > to || value <= above || value >= below) {
@@ -23,12 +34,13 @@ std::string OptionRange::text() const {
                      : only == Only::power_of_two ? "a power of two, "
                                                   : "";
   const bool has_low = !std::isnan(from) || !std::isnan(above);
-  const std::string low =
-      std::isnan(above) ? fmt::format("{:g}", from) : fmt::format("above {:g}", above);
+  const std::string low = std::isnan(above) ? boundText(from) : "above " + boundText(above);
   if (!ends()) return has_low ? kind + low + (std::isnan(above) ? " or more" : "") : "";
-  if (!std::isnan(from) && !std::isnan(to)) return kind + fmt::format("{:g} to {:g}", from, to);
+  if (!std::isnan(from) && !std::isnan(to)) {
+    return kind + boundText(from) + " to " + boundText(to);
+  }
   const std::string high =
-      std::isnan(below) ? fmt::format("at most {:g}", to) : fmt::format("below {:g}", below);
+      std::isnan(below) ? "at most " + boundText(to) : "below " + boundText(below);
   return kind + (has_low ? low + " and " : "") + high;
 }
 
