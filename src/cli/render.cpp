@@ -118,7 +118,7 @@ bool onlySources(const Pipeline& pipeline, const ElementUse& elements, const Out
 }
 
 /// Announces a long final gather before it starts.
-void foretellGather(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
+void announceGather(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                     const Picture& picture) {
   constexpr double kWorthSaying = 60;  // seconds
   const PixelGatherReport foreseen =
@@ -138,7 +138,7 @@ Image radianceOfPicture(Session& session, Pipeline& pipeline, const SurfaceLight
   if (!light.points) {
     return renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
   }
-  foretellGather(session, mesh, light, picture);
+  announceGather(session, mesh, light, picture);
   PixelGather gathered =
       gatherRadiance(mesh, light, picture.camera, picture.options, {}, session.progress);
   summarizeFinalGather(session.report, light.points->report(), gathered.report, pipeline.factors());

@@ -69,7 +69,7 @@ struct EmitterLight::Lights : ElementLights {
 
   void judge() {
     kind = seen.empty() ? Kind::dark : candidates.empty() ? Kind::plain : Kind::partial;
-    if (seen.size() + candidates.size() > kMostClips) kind = Kind::dear;
+    if (seen.size() + candidates.size() > kMostClips) kind = Kind::by_rays;
   }
 };
 
@@ -138,7 +138,7 @@ std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& 
   } else if (findAll(shape, *lights)) {
     lights->judge();
   } else {
-    lights->kind = ElementLights::Kind::dear;
+    lights->kind = ElementLights::Kind::by_rays;
     lights->settled = true;
   }
   return lights;
@@ -241,7 +241,7 @@ void EmitterLight::thinOut(const ElementShape& shape, const Lights& from, Lights
 double EmitterLight::irradiance(const SurfacePoint& point, const ElementLights* lights,
                                 std::span<double> out) const {
   const auto* of = static_cast<const Lights*>(lights);
-  if (of == nullptr || of->kind == ElementLights::Kind::dear) return aimed(point, of, out);
+  if (of == nullptr || of->kind == ElementLights::Kind::by_rays) return aimed(point, of, out);
   return clipped(point, *of, out);
 }
 

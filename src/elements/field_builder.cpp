@@ -156,7 +156,7 @@ class FieldBuilder {
   }
 
   bool isDear(const Node& node) const {
-    return node.lights && node.lights->kind == ElementLights::Kind::dear;
+    return node.lights && node.lights->kind == ElementLights::Kind::by_rays;
   }
   bool isDark(const Node& node) const {
     return node.lights && node.lights->kind == ElementLights::Kind::dark;
@@ -208,7 +208,7 @@ class FieldBuilder {
       const bool partial = node.lights && node.lights->kind == ElementLights::Kind::partial;
       node.forced = edge > rule_.longest_edge || (partial && edge > rule_.partial_edge);
       double smallest = isShown(node.root) ? rule_.smallest_edge : rule_.source_edge;
-      if (isDear(node)) smallest = std::max(smallest, rule_.dear_edge);
+      if (isDear(node)) smallest = std::max(smallest, rule_.edge_by_rays);
       const double spread =
           rule_.least_spread * (surface_.curved[node.root] != 0 ? rule_.curved_spread : 1);
       const double found = spreadOf(node);
@@ -305,7 +305,7 @@ class FieldBuilder {
         }
         node.error = std::max(node.error, off / light);
       }
-      const double most = isDear(node) ? rule_.dear_tolerance : rule_.tolerance;
+      const double most = isDear(node) ? rule_.tolerance_by_rays : rule_.tolerance;
       node.wants_cut = node.forced || node.error > rule_.steep_spread ||
                        node.error * edgeOf(node) / rule_.reference_edge > most;
     });

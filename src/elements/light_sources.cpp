@@ -158,8 +158,8 @@ RefinementRule LightSources::rule(double tolerance, double smallest) const {
   rule.smallest_edge = smallest * surface_.diagonal;
   rule.steep_spread = kSteepSpread;
   rule.steep_fraction = kSteepFraction;
-  rule.dear_tolerance = std::max(tolerance, kAimedTolerance);
-  rule.dear_edge = kDearEdge * surface_.diagonal;
+  rule.tolerance_by_rays = std::max(tolerance, kAimedTolerance);
+  rule.edge_by_rays = kDearEdge * surface_.diagonal;
   rule.partial_edge = kPartialEdge * surface_.diagonal;
   rule.longest_edge = kLongestEdge * surface_.diagonal;
   rule.reference_edge = kReferenceEdge * surface_.diagonal;
@@ -195,8 +195,8 @@ void LightSources::findDirect(bool keep_lights) {
                                                   occluders_.get(), emitters_, rays_);
   RefinementRule how = rule(options_.tolerance, options_.smallest_edge);
   if (!clip) {
-    how.tolerance = how.dear_tolerance;
-    how.smallest_edge = std::max(how.smallest_edge, how.dear_edge);
+    how.tolerance = how.tolerance_by_rays;
+    how.smallest_edge = std::max(how.smallest_edge, how.edge_by_rays);
   }
   how.other_light = light_of_patch_;
   how.keep_lights = keep_lights;

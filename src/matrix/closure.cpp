@@ -171,7 +171,7 @@ std::pmr::vector<std::uint8_t>& LeastSquaresClosure::freeOf(std::size_t k) {
 /// W x over the free entries.
 std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>& x) {
   std::vector<double> out(x.size());
-  const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
+  const auto row = [&](std::size_t k, double* scattered, std::size_t) {
     const double squared_area = area_[k] * area_[k];
     const double own = squared_area * x[k];
     const double* later = x.data() + k + 1;
@@ -181,7 +181,7 @@ std::vector<double> LeastSquaresClosure::timesWeights(const std::vector<double>&
               for (std::size_t m = 0; m < count; ++m) {
                 const double squared = squared_[codes[m]];
                 gathered += squared * later[offset + m];
-                handed_on[offset + m] += squared * own;
+                scattered[offset + m] += squared * own;
               }
             });
     out[k] = squared_area * gathered;
@@ -245,14 +245,14 @@ void LeastSquaresClosure::evaluate() {
     value[k] += area_[k] * (held ? -f * sum - f * f / (2 * slope) : change * sum / 2);
     return std::pair(change, held);
   };
-  const auto row = [&](std::size_t k, double* handed_on, std::size_t) {
+  const auto row = [&](std::size_t k, double* scattered, std::size_t) {
     std::pmr::vector<std::uint8_t>& free = freeOf(k);
     forUncertain(k, [&](std::size_t index, std::size_t later, std::uint8_t code, double f) {
       const double sum = multiplier_[k] + multiplier_[later];
       const auto [change, held] = move(k, f, squared_[code], sum, free[index] == 0);
       free[index] = held ? std::uint8_t(0) : code;
       emptied[k] += held ? 1 : 0;
-      handed_on[later - k - 1] += area_[k] * change;
+      scattered[later - k - 1] += area_[k] * change;
     });
     const auto moveAlone = [&](Alone& entry) {
       if (!(entry.squared_error > 0)) return;

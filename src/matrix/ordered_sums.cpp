@@ -48,17 +48,17 @@ class ChunkedSums {
     }
   }
 
-  /// Adds the sums of own rows to `gathered`. Process 0 gets in `handed` what rows hand on to
+  /// Adds the sums of own rows to `gathered`. Process 0 gets in `scattered` what rows scatter to
   /// later ones.
-  void run(std::span<double> gathered, std::span<double> handed, const WhileWaiting& waiting) {
+  void run(std::span<double> gathered, std::span<double> scattered, const WhileWaiting& waiting) {
     for (std::size_t step = 0; step < steps_; ++step) {
       parallelFor(chunks_.size(), 1,
                   [&](std::size_t c) { addStretch(chunks_[c], step, gathered); });
       passOn(step, waiting);
     }
     for (const Chunk& chunk : chunks_) {  // filled in process 0 alone
-      for (std::size_t k = 0; k < chunk.sums.size() && chunk.begin + k < handed.size(); ++k) {
-        handed[chunk.begin + k] += chunk.sums[k];
+      for (std::size_t k = 0; k < chunk.sums.size() && chunk.begin + k < scattered.size(); ++k) {
+        scattered[chunk.begin + k] += chunk.sums[k];
       }
     }
   }
@@ -67,7 +67,7 @@ class ChunkedSums {
   struct Chunk {
     std::size_t begin;
     std::vector<Stretch> stretches;
-    /// Handed on to rows from `begin` on, where this process adds or has added the last stretch.
+    /// Scattered to rows from `begin` on, where this process adds or has added the last stretch.
     std::vector<double> sums;
   };
 
@@ -130,15 +130,15 @@ std::vector<double> orderedRowSums(Processes& processes, const ExchangeMatrix& o
   }
   const TrianglePass pass(n, kSums, [&](std::size_t k) { return owners.work[k]; });
   std::vector<double> gathered(n, 0.0);
-  std::vector<double> handed(first_process ? n : 0, 0.0);
+  std::vector<double> scattered(first_process ? n : 0, 0.0);
   for (std::size_t k = 0; k < n; ++k) gathered[k] = own.diagonal(k);
-  ChunkedSums(processes, own, owners, pass).run(gathered, handed, waiting);
+  ChunkedSums(processes, own, owners, pass).run(gathered, scattered, waiting);
   processes.sum(gathered, waiting);
   if (!first_process) return {};
   std::vector<double> sums(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double area = own.area()[own.order()[k]];
-    sums[own.order()[k]] = gathered[k] + (area > 0 ? handed[k] / area : 0.0);
+    sums[own.order()[k]] = gathered[k] + (area > 0 ? scattered[k] / area : 0.0);
   }
   return sums;
 }

@@ -69,17 +69,17 @@ class LabelledSets {
 }  // namespace
 
 double sumRow(const ExchangeMatrix& own, std::size_t k, std::size_t begin,
-              std::span<const double> ones, std::span<double> handed_on) {
+              std::span<const double> ones, std::span<double> scattered) {
   const double area = own.area()[own.order()[k]];
   const RowBlock row{.rows = {&own.upperRuns(k), 1}, .first = k + 1 - begin};
   const RowOperands operands{.x = ones.data(),
                              .x_stride = ones.size(),
-                             .z = handed_on.data(),
-                             .z_stride = handed_on.size(),
+                             .z = scattered.data(),
+                             .z_stride = scattered.size(),
                              .bands = 1};
   static const TriangleKernels kernels = triangleKernels();
   double sum = 0;
-  kernels.gather_and_hand_on(row, operands, &area, &sum);
+  kernels.gather_and_scatter(row, operands, &area, &sum);
   return sum + own.diagonal(k);
 }
 

@@ -11,18 +11,18 @@
 namespace radiosity {
 
 /// Symmetric form: returns the sum of row k of the triangle, its diagonal included, and adds the
-/// value that it hands on to row q to handed_on[q - begin]. `begin`: at most k, and a multiple of
+/// value that it scatters to row q to scattered[q - begin]. `begin`: at most k, and a multiple of
 /// kSums (triangle_kernels.h). `ones`: 1 for each row from `begin` on. Both spans have room for
 /// whole vectors of rows.
 double sumRow(const ExchangeMatrix& own, std::size_t k, std::size_t begin,
-              std::span<const double> ones, std::span<double> handed_on);
+              std::span<const double> ones, std::span<double> scattered);
 
 /// y = the transpose of the rows times x, N * bands. The symmetric form takes one product.
 void transposedProduct(const ExchangeMatrix& own, std::span<const double> x, int bands,
                        std::span<double> y);
 
 /// Calls visit(i, j, F_ij) for every entry of the rows; in the symmetric form also for the entries
-/// that they hand on.
+/// that they scatter.
 void forOwnEntries(const ExchangeMatrix& own,
                    const std::function<void(std::size_t, std::size_t, double)>& visit);
 

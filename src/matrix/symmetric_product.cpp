@@ -13,8 +13,8 @@ namespace radiosity {
 
 namespace {
 
-/// The bands that one pass over the matrix serves. More would need more memory for the sums handed
-/// on and would not save time.
+/// The bands that one pass over the matrix serves. More would need more memory for the sums
+/// scattered and would not save time.
 constexpr int kBandsAtOnce = 16;
 
 /// Bands [first, last) of N * bands values, a plane each, by position instead of patch.
@@ -49,19 +49,19 @@ bool isWanted(std::span<const std::uint8_t> wanted, Index patch) {
 void multiplyBlock(const TriangleKernels& kernels, const RowBlock& block,
                    const RowOperands& operands, std::span<const double> factor, bool gathers,
                    double* sums) {
-  const bool hands_on = std::ranges::any_of(factor, [](double f) { return f != 0; });
-  if (gathers && hands_on) {
-    kernels.gather_and_hand_on(block, operands, factor.data(), sums);
+  const bool scatters = std::ranges::any_of(factor, [](double f) { return f != 0; });
+  if (gathers && scatters) {
+    kernels.gather_and_scatter(block, operands, factor.data(), sums);
   } else if (gathers) {
     kernels.gather(block, operands, sums);
   } else {
     std::fill_n(sums, factor.size(), 0.0);
-    if (hands_on) kernels.hand_on(block, operands, factor.data());
+    if (scatters) kernels.scatter(block, operands, factor.data());
   }
 }
 
-/// The sum handed on to a row, divided by its area; 0 for a patch without area.
-double perArea(double handed, double area) { return area > 0 ? handed / area : 0.0; }
+/// The sum scattered to a row, divided by its area; 0 for a patch without area.
+double perArea(double scattered, double area) { return area > 0 ? scattered / area : 0.0; }
 
 }  // namespace
 
@@ -76,7 +76,7 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
     in.take(x, width, order_);
     std::vector<double> gathered(n * in.bands);
     // Positions count from `begin`, the first of a range of rows.
-    const auto block = [&](std::size_t k, std::size_t count, std::size_t begin, double* handed,
+    const auto block = [&](std::size_t k, std::size_t count, std::size_t begin, double* scattered,
                            std::size_t stride) {
       const RowBlock rows{.rows = {&upper_[k], count}, .first = k + 1 - begin};
       for (const RunRow& row : rows.rows) touchRows(scratch_.memory.get(), bytesOf(row));
@@ -87,7 +87,7 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
         const std::size_t some = std::min(in.bands - b, std::size_t(kMaxBands));
         const RowOperands operands{.x = &in.at(b, begin),
                                    .x_stride = in.stride,
-                                   .z = handed + b * stride,
+                                   .z = scattered + b * stride,
                                    .z_stride = stride,
                                    .bands = int(some)};
         double factor[kMaxRows * kMaxBands];
@@ -101,25 +101,26 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
         }
       }
     };
-    const auto range = [&](std::size_t begin, std::size_t end, double* handed, std::size_t stride) {
+    const auto range = [&](std::size_t begin, std::size_t end, double* scattered,
+                           std::size_t stride) {
       for (std::size_t k = begin; k < end; k += kMaxRows) {
-        block(k, std::min(kMaxRows, end - k), begin, handed, stride);
+        block(k, std::min(kMaxRows, end - k), begin, scattered, stride);
       }
     };
-    const auto finish = [&](std::size_t k, const double* handed) {
+    const auto finish = [&](std::size_t k, const double* scattered) {
       const Index patch = order_[k];
       if (!isWanted(wanted, patch)) return;
       for (std::size_t b = 0; b < in.bands; ++b) {
         const double own = diagonal_[k] * in.at(b, k);
         y[patch * width + in.first_band + b] =
-            gathered[k * in.bands + b] + own + perArea(handed[b], area_[patch]);
+            gathered[k * in.bands + b] + own + perArea(scattered[b], area_[patch]);
       }
     };
     pass.runRanges(in.bands, range, finish);
   }
 }
 
-// Earlier patches handed their part of row k's sum on just after their update; the part of later
+// Earlier patches scattered their part of row k's sum just after their update; the part of later
 // patches is gathered from values that are not updated yet. So a sweep, too, passes over the
 // triangle once.
 void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update& update,
@@ -128,15 +129,15 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
   const auto width = std::size_t(bands);
   Planes now(n, 0, bands);
   now.take(x, width, order_);
-  Planes handed(n, 0, bands);
+  Planes scattered(n, 0, bands);
   const TriangleKernels kernels = triangleKernels();
   std::vector<double> sums(width);
   std::vector<double> factor(width);
   const auto operands = [&](int first) {
     return RowOperands{.x = &now.at(std::size_t(first), 0),
                        .x_stride = now.stride,
-                       .z = &handed.at(std::size_t(first), 0),
-                       .z_stride = handed.stride,
+                       .z = &scattered.at(std::size_t(first), 0),
+                       .z_stride = scattered.stride,
                        .bands = std::min(bands - first, kMaxBands)};
   };
   const auto gather = [&](const RowBlock& row) {
@@ -151,7 +152,7 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
     if (isWanted(wanted, patch)) {
       gather(row);
       for (std::size_t b = 0; b < width; ++b) {
-        sums[b] += diagonal_[k] * now.at(b, k) + perArea(handed.at(b, k), area);
+        sums[b] += diagonal_[k] * now.at(b, k) + perArea(scattered.at(b, k), area);
       }
       update(patch, sums.data());
       for (std::size_t b = 0; b < width; ++b) now.at(b, k) = x[patch * width + b];
@@ -159,7 +160,7 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
     for (std::size_t b = 0; b < width; ++b) factor[b] = now.at(b, k) * area;
     if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) continue;
     for (int b = 0; b < bands; b += kMaxBands) {
-      kernels.hand_on(row, operands(b), &factor[std::size_t(b)]);
+      kernels.scatter(row, operands(b), &factor[std::size_t(b)]);
     }
   }
 }

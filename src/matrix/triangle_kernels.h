@@ -30,7 +30,7 @@ inline constexpr std::size_t kOverrun = kSums - 1;
 struct RowOperands {
   const double* x = nullptr;  ///< gathered from
   std::size_t x_stride = 0;
-  double* z = nullptr;  ///< handed on to
+  double* z = nullptr;  ///< scattered to
   std::size_t z_stride = 0;
   int bands = 0;  ///< 1 to kMaxBands
 };
@@ -47,9 +47,9 @@ struct TriangleKernels {
   /// sums[r * bands + b] = sum over row r of value * x_b[place].
   void (*gather)(const RowBlock& block, const RowOperands& operands, double* sums);
   /// z_b[place] += value * factor[r * bands + b], rounded once, row after row.
-  void (*hand_on)(const RowBlock& block, const RowOperands& operands, const double* factor);
+  void (*scatter)(const RowBlock& block, const RowOperands& operands, const double* factor);
   /// Does both in one pass. Here several rows at once are faster than one after the other.
-  void (*gather_and_hand_on)(const RowBlock& block, const RowOperands& operands,
+  void (*gather_and_scatter)(const RowBlock& block, const RowOperands& operands,
                              const double* factor, double* sums);
 };
 

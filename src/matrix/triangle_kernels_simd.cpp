@@ -144,7 +144,7 @@ struct Lanes {
 
 /// Walks along row r alone, up to place `stop`. All state is in local variables: with members the
 /// compiler would have to assume that writing z changes them.
-template <int kBands, bool kGather, bool kHandOn, class Value>
+template <int kBands, bool kGather, bool kScatter, class Value>
 void walkAlone(Walk<kBands, Value>& walk, std::size_t r, std::size_t stop) {
   const Doubles d;
   Cursor<Value> cursor = walk.cursors[r];
@@ -152,7 +152,7 @@ void walkAlone(Walk<kBands, Value>& walk, std::size_t r, std::size_t stop) {
   Vector scale[kBands];
   Vector sum[kBands][kVectors];
   for (int b = 0; b < kBands; ++b) {
-    if constexpr (kHandOn) scale[b] = hn::Set(d, walk.factorOf(r, b));
+    if constexpr (kScatter) scale[b] = hn::Set(d, walk.factorOf(r, b));
     for (std::size_t v = 0; v < kVectors; ++v) {
       sum[b][v] = hn::Load(d, walk.sums[r][b] + v * kWidth);
     }
@@ -167,7 +167,7 @@ void walkAlone(Walk<kBands, Value>& walk, std::size_t r, std::size_t stop) {
         const Vector from = hn::LoadU(d, x + std::size_t(b) * x_stride + place);
         sum[b][v] = fusedMultiplyAdd(value, from, sum[b][v]);
       }
-      if constexpr (kHandOn) {
+      if constexpr (kScatter) {
         double* to = z + std::size_t(b) * z_stride + place;
         hn::StoreU(fusedMultiplyAdd(value, scale[b], hn::LoadU(d, to)), d, to);
       }
@@ -204,7 +204,7 @@ void walkAlone(Walk<kBands, Value>& walk, std::size_t r, std::size_t stop) {
   }
 }
 
-/// Gathers and hands on for rows r to r + kRows - 1, all of which have values at the `count` places
+/// Gathers and scatters for rows r to r + kRows - 1, all of which have values at the `count` places
 /// from `place` on; both are multiples of kSums. Of each kSums places it handles only vector v, so
 /// that all sums fit in registers.
 template <std::size_t kRows, int kBands, class Value>
@@ -276,8 +276,8 @@ Stretch nextStretch(const Walk<kBands, Value>& walk) {
 }
 
 /// Walks along all rows together where all have values, and one after the other elsewhere. Each
-/// place adds the values handed on in the order of rows; each row adds the values gathered in the
-/// order of places.
+/// place adds the values scattered to it in the order of rows; each row adds the values gathered in
+/// the order of places.
 template <int kBands, class Value>
 void walkBlock(Walk<kBands, Value>& walk) {
   constexpr std::size_t kRows = rowsAtOnce(kBands);
@@ -299,7 +299,7 @@ void walkBlock(Walk<kBands, Value>& walk) {
   allAlone(std::size_t(-1));
 }
 
-template <int kBands, bool kGather, bool kHandOn, class Value>
+template <int kBands, bool kGather, bool kScatter, class Value>
 void walkRows(const RowBlock& block, const RowOperands& operands, const double* factor,
               double* sums) {
   Walk<kBands, Value> walk;
@@ -309,11 +309,11 @@ void walkRows(const RowBlock& block, const RowOperands& operands, const double* 
   for (std::size_t r = 0; r < walk.rows; ++r) {
     walk.cursors[r] = startOf<Value>(block.rows[r], block.first + r);
   }
-  if constexpr (kGather && kHandOn) {
+  if constexpr (kGather && kScatter) {
     walkBlock(walk);
   } else {
     for (std::size_t r = 0; r < walk.rows; ++r) {
-      walkAlone<kBands, kGather, kHandOn>(walk, r, std::size_t(-1));
+      walkAlone<kBands, kGather, kScatter>(walk, r, std::size_t(-1));
     }
   }
   if constexpr (!kGather) return;
@@ -326,31 +326,31 @@ void walkRows(const RowBlock& block, const RowOperands& operands, const double* 
   }
 }
 
-template <int kBands, bool kGather, bool kHandOn>
+template <int kBands, bool kGather, bool kScatter>
 void walkValues(const RowBlock& block, const RowOperands& operands, const double* factor,
                 double* sums) {
   // A row without values has neither floats nor doubles.
   const bool doubles = std::any_of(block.rows.begin(), block.rows.end(),
                                    [](const RunRow& row) { return !row.doubles.empty(); });
   if (doubles) {
-    walkRows<kBands, kGather, kHandOn, double>(block, operands, factor, sums);
+    walkRows<kBands, kGather, kScatter, double>(block, operands, factor, sums);
   } else {
-    walkRows<kBands, kGather, kHandOn, float>(block, operands, factor, sums);
+    walkRows<kBands, kGather, kScatter, float>(block, operands, factor, sums);
   }
 }
 
-template <bool kGather, bool kHandOn>
+template <bool kGather, bool kScatter>
 void walkBands(const RowBlock& block, const RowOperands& operands, const double* factor,
                double* sums) {
   switch (operands.bands) {
     case 1:
-      return walkValues<1, kGather, kHandOn>(block, operands, factor, sums);
+      return walkValues<1, kGather, kScatter>(block, operands, factor, sums);
     case 2:
-      return walkValues<2, kGather, kHandOn>(block, operands, factor, sums);
+      return walkValues<2, kGather, kScatter>(block, operands, factor, sums);
     case 3:
-      return walkValues<3, kGather, kHandOn>(block, operands, factor, sums);
+      return walkValues<3, kGather, kScatter>(block, operands, factor, sums);
     default:
-      return walkValues<kMaxBands, kGather, kHandOn>(block, operands, factor, sums);
+      return walkValues<kMaxBands, kGather, kScatter>(block, operands, factor, sums);
   }
 }
 
@@ -358,16 +358,18 @@ void gather(const RowBlock& block, const RowOperands& operands, double* sums) {
   walkBands<true, false>(block, operands, nullptr, sums);
 }
 
-void handOn(const RowBlock& block, const RowOperands& operands, const double* factor) {
+void scatter(const RowBlock& block, const RowOperands& operands, const double* factor) {
   walkBands<false, true>(block, operands, factor, nullptr);
 }
 
-void gatherAndHandOn(const RowBlock& block, const RowOperands& operands, const double* factor,
-                     double* sums) {
+void gatherAndScatter(const RowBlock& block, const RowOperands& operands, const double* factor,
+                      double* sums) {
   walkBands<true, true>(block, operands, factor, sums);
 }
 
-TriangleKernels kernels() { return {hwy::TargetName(HWY_TARGET), gather, handOn, gatherAndHandOn}; }
+TriangleKernels kernels() {
+  return {hwy::TargetName(HWY_TARGET), gather, scatter, gatherAndScatter};
+}
 
 }  // namespace
 }  // namespace radiosity::HWY_NAMESPACE

@@ -87,7 +87,7 @@ class TrianglePass {
     return (rows_ - starts_[chunk] + lanes_ - 1) / lanes_ * lanes_;
   }
 
-  /// What all chunks hand on to rows [begin, end), plane by plane; it is added chunk by chunk, so
+  /// What all chunks scatter to rows [begin, end), plane by plane; it is added chunk by chunk, so
   /// that memory is read in order.
   std::vector<double> totalsOf(const std::vector<AlignedBuffer<double>>& sums, std::size_t planes,
                                std::size_t begin, std::size_t end) const {

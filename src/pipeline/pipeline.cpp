@@ -215,11 +215,11 @@ void Pipeline::shareStoredMatrix() {
 
 /// Computes this process's share of the form factors.
 ExchangeMatrix Pipeline::shareRows(Processes& processes) {
-  JournalTold told;
-  told.broadcast(processes);
-  const std::unique_ptr<JournalFile> file = told.open(processes.rank());
+  FirstJournal first;
+  first.broadcast(processes);
+  const std::unique_ptr<JournalFile> file = first.open(processes.rank());
   std::unique_ptr<SharedJournal> journal;
-  if (file) journal = std::make_unique<SharedJournal>(*file, told.path, told.resume);
+  if (file) journal = std::make_unique<SharedJournal>(*file, first.path, first.resume);
   return shareFormFactors(mesh().mesh, processes, progress_, journal.get());
 }
 

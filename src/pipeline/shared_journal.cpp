@@ -61,7 +61,7 @@ void SharedJournal::keep(RowBlock kind, std::uint64_t number, std::span<const st
   own_.keep(kind, number, bytes);
 }
 
-void JournalTold::broadcast(Processes& processes) {
+void FirstJournal::broadcast(Processes& processes) {
   for (std::string* text : {&path, &key}) {
     std::vector<char> letters(text->begin(), text->end());
     processes.broadcastArray(letters);
@@ -70,7 +70,7 @@ void JournalTold::broadcast(Processes& processes) {
   processes.broadcastValue(resume);
 }
 
-std::unique_ptr<JournalFile> JournalTold::open(int rank) const {
+std::unique_ptr<JournalFile> FirstJournal::open(int rank) const {
   if (path.empty()) return nullptr;
   try {
     return std::make_unique<JournalFile>(pathOf(path, rank), key, resume);

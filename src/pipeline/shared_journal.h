@@ -29,7 +29,7 @@ class SharedJournal : public RowJournal {
 };
 
 /// The description of process 0's journal that it sends to the other processes.
-struct JournalTold {
+struct FirstJournal {
   std::string path;  ///< of process 0's journal; empty: rows are not kept
   std::string key;
   bool resume = true;

@@ -102,11 +102,11 @@ void expectTheBitsOfTheDefinition(const TriangleKernels& kernels, const Block& s
   kernels.gather(sample.block(), sample.operands(z, bands), sums.data());
   EXPECT_EQ(z, sample.z);
   EXPECT_EQ(sums, gathered);
-  kernels.hand_on(sample.block(), sample.operands(z, bands), sample.factor.data());
+  kernels.scatter(sample.block(), sample.operands(z, bands), sample.factor.data());
   EXPECT_EQ(z, handed);
   z = sample.z;
   sums = untouched;
-  kernels.gather_and_hand_on(sample.block(), sample.operands(z, bands), sample.factor.data(),
+  kernels.gather_and_scatter(sample.block(), sample.operands(z, bands), sample.factor.data(),
                              sums.data());
   EXPECT_EQ(z, handed);
   EXPECT_EQ(sums, gathered);

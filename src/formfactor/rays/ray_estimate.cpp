@@ -24,7 +24,7 @@ constexpr std::uint32_t kFewRays = kPilotRays;
 constexpr std::uint32_t kManyRays = 8 * kPilotRays;
 
 /// A row by kFewRays.
-struct FirstLook {
+struct PilotRow {
   std::size_t position = 0;
   double stands_for = 0;  ///< rows, itself included
   RowAccuracy accuracy;
@@ -54,12 +54,12 @@ double visibleEntries(const RayRow& row) {
   return double(row.columns.size()) + once * (once - 1) / (2 * (twice + 1));
 }
 
-void lookAt(const RayScene& scene, FirstLook& look, const Progress& progress) {
+void castPilotRow(const RayScene& scene, PilotRow& pilot, const Progress& progress) {
   RayRow row;
-  scene.cast(look.position, kFewRays, row, progress);
+  scene.cast(pilot.position, kFewRays, row, progress);
   if (progress.cancelled()) return;
-  look.accuracy = accuracyAlone(row, scene.size());
-  look.sky = row.skyShare();
+  pilot.accuracy = accuracyAlone(row, scene.size());
+  pilot.sky = row.skyShare();
 }
 
 void castMore(const RayScene& scene, SampledRow& sampled, const Progress& progress) {
@@ -76,7 +76,7 @@ void castMore(const RayScene& scene, SampledRow& sampled, const Progress& progre
   sampled.visible = visibleEntries(row);
 }
 
-/// Moderates errors by those of all first looks or sampled rows, as rounds will (CommonError).
+/// Moderates errors by those of all pilot rows or sampled rows, as rounds will (CommonError).
 template <class Row>
 void moderate(std::vector<Row>& rows) {
   CommonError common;
@@ -110,17 +110,17 @@ struct Need {
   }
 };
 
-void setUsualNorms(const RayScene& scene, const std::vector<FirstLook>& looks, Need& need) {
+void setUsualNorms(const RayScene& scene, const std::vector<PilotRow>& pilots, Need& need) {
   UsualNorm usual;
   UsualNorm whole;
-  for (const FirstLook& look : looks) {
-    const double norm = need.normOf(look.accuracy, look.sky);
-    const double area = look.stands_for * scene.area()[look.position];
+  for (const PilotRow& pilot : pilots) {
+    const double norm = need.normOf(pilot.accuracy, pilot.sky);
+    const double area = pilot.stands_for * scene.area()[pilot.position];
     usual.add(norm, area);
-    whole.add(std::hypot(norm, look.accuracy.backs_norm), area);
+    whole.add(std::hypot(norm, pilot.accuracy.backs_norm), area);
   }
   double unknown = 0;
-  for (const FirstLook& look : looks) unknown += look.accuracy.isUnknown() ? look.stands_for : 0;
+  for (const PilotRow& pilot : pilots) unknown += pilot.accuracy.isUnknown() ? pilot.stands_for : 0;
   need.most_of_unknown = mostOfUnknown(unknown);
   need.usual = usual.value();
   need.usual_whole = whole.value();
@@ -153,31 +153,31 @@ std::vector<Chosen> choose(const std::vector<double>& weights, std::size_t most)
   return chosen;
 }
 
-/// Rows to look at. Few large ones may decide the norm of a usual row.
-std::vector<FirstLook> chooseLooks(const RayScene& scene) {
-  std::vector<FirstLook> looks;
+/// The pilot rows. Few large ones may decide the norm of a usual row.
+std::vector<PilotRow> choosePilotRows(const RayScene& scene) {
+  std::vector<PilotRow> pilots;
   for (const auto& [position, stands_for] : choose(scene.area(), kMostFirstRows)) {
-    looks.emplace_back();
-    looks.back().position = position;
-    looks.back().stands_for = stands_for;
+    pilots.emplace_back();
+    pilots.back().position = position;
+    pilots.back().stands_for = stands_for;
   }
-  return looks;
+  return pilots;
 }
 
 /// Of the rows looked at, those to be cast with more rays. Few rows need most of the rays, and
 /// would be missed or met twice by an even choice.
-std::vector<SampledRow> chooseRows(const std::vector<FirstLook>& looks, const Need& need,
+std::vector<SampledRow> chooseRows(const std::vector<PilotRow>& pilots, const Need& need,
                                    double tolerance) {
   std::vector<double> needed;
-  needed.reserve(looks.size());
-  for (const FirstLook& look : looks) {
-    needed.push_back(look.stands_for * need.rays(look.accuracy, look.sky, kFewRays, tolerance));
+  needed.reserve(pilots.size());
+  for (const PilotRow& pilot : pilots) {
+    needed.push_back(pilot.stands_for * need.rays(pilot.accuracy, pilot.sky, kFewRays, tolerance));
   }
   std::vector<SampledRow> rows;
   for (const auto& [which, stands_for] : choose(needed, kMostRows)) {
     rows.emplace_back();
-    rows.back().position = looks[which].position;
-    rows.back().stands_for = stands_for * looks[which].stands_for;
+    rows.back().position = pilots[which].position;
+    rows.back().stands_for = stands_for * pilots[which].stands_for;
   }
   return rows;
 }
@@ -272,17 +272,17 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
                          Progress& progress) {
   const std::size_t n = scene.size();
   const RayAim aim(options);
-  std::vector<FirstLook> looks = chooseLooks(scene);
-  progress.begin("planning", looks.size() + std::min(looks.size(), kMostRows));
-  parallelFor(looks.size(), 1, [&](std::size_t k) {
-    lookAt(scene, looks[k], progress);
+  std::vector<PilotRow> pilots = choosePilotRows(scene);
+  progress.begin("planning", pilots.size() + std::min(pilots.size(), kMostRows));
+  parallelFor(pilots.size(), 1, [&](std::size_t k) {
+    castPilotRow(scene, pilots[k], progress);
     progress.advance();
   });
   progress.check();
-  moderate(looks);
+  moderate(pilots);
   Need need{aim.sky_weight};
-  setUsualNorms(scene, looks, need);
-  std::vector<SampledRow> rows = chooseRows(looks, need, aim.tolerance);
+  setUsualNorms(scene, pilots, need);
+  std::vector<SampledRow> rows = chooseRows(pilots, need, aim.tolerance);
   parallelFor(rows.size(), 1, [&](std::size_t k) {
     castMore(scene, rows[k], progress);
     progress.advance();

@@ -25,7 +25,7 @@ constexpr std::size_t kPairsAtOnce = 64;
 
 /// A cell at an edge, with the spaces on its sides of larger and of smaller angles about the edge.
 /// (RingCell of hollows.cpp has the angle, too, since any number of cells may be at an edge there.)
-struct Wing {
+struct EdgeCell {
   Index after;
   Index before;
 };
@@ -35,17 +35,17 @@ struct Wing {
 /// is an edge, so no other cell passes there.
 UnionFind joinSpaces(const Arrangement& arrangement) {
   UnionFind spaces(2 * arrangement.cells.size());
-  std::vector<Wing> wings;
+  std::vector<EdgeCell> cells;
   for (const auto& at_edge : arrangement.sides) {
-    wings.clear();
+    cells.clear();
     for (const EdgeSides& s : at_edge) {
       // About the edge from a to b, a cell on its left has larger angles above.
-      if (s.left != kNone) wings.push_back({2 * s.left + kAbove, 2 * s.left + kBelow});
-      if (s.right != kNone) wings.push_back({2 * s.right + kBelow, 2 * s.right + kAbove});
+      if (s.left != kNone) cells.push_back({2 * s.left + kAbove, 2 * s.left + kBelow});
+      if (s.right != kNone) cells.push_back({2 * s.right + kBelow, 2 * s.right + kAbove});
     }
-    if (wings.size() != 2) continue;
-    spaces.unite(wings[0].after, wings[1].before);
-    spaces.unite(wings[0].before, wings[1].after);
+    if (cells.size() != 2) continue;
+    spaces.unite(cells[0].after, cells[1].before);
+    spaces.unite(cells[0].before, cells[1].after);
   }
   return spaces;
 }

@@ -37,7 +37,7 @@ Index sideOf(Index polygon, bool back) { return 2 * polygon + (back ? 1 : 0); }
 
 /// A polygon at an edge: its direction as an angle about the edge, and the sides that look to
 /// larger and smaller angles.
-struct Wing {
+struct PolygonAtEdge {
   double angle;
   Index up;
   Index down;
@@ -162,22 +162,22 @@ class SpaceSearch {
   }
 
   void join() {
-    std::vector<Wing> wings;
+    std::vector<PolygonAtEdge> around;
     forEdges(withoutTJunctions(edgeUsers(all_, first_)), [&](std::span<const EdgeUser> users) {
-      wingsOf(users, wings);
-      for (std::size_t k = 0; k < wings.size(); ++k) {
-        const Index up = wings[k].up;
-        const Index down = wings[(k + 1) % wings.size()].down;
+      polygonsAt(users, around);
+      for (std::size_t k = 0; k < around.size(); ++k) {
+        const Index up = around[k].up;
+        const Index down = around[(k + 1) % around.size()].down;
         shells_.unite(up, down);
         // Nothing depends on angles here.
-        if (wings.size() <= 2) sheets_.unite(up, down);
+        if (around.size() <= 2) sheets_.unite(up, down);
       }
     });
   }
 
   /// The polygons at an edge, by angle. If some lie back to back, their backs face each other.
-  void wingsOf(std::span<const EdgeUser> users, std::vector<Wing>& wings) const {
-    wings.clear();
+  void polygonsAt(std::span<const EdgeUser> users, std::vector<PolygonAtEdge>& around) const {
+    around.clear();
     const Vec3 along = glm::normalize(at(users[0].high()) - at(users[0].low()));
     Vec3 u(0.0);
     Vec3 v(0.0);
@@ -185,24 +185,26 @@ class SpaceSearch {
       // To the left of an edge, seen from the front, is the polygon.
       const Vec3& normal = all_.normal[user.polygon];
       const Vec3 inward = glm::cross(normal, user.reversed ? -along : along);
-      if (wings.empty()) {
+      if (around.empty()) {
         u = inward;
         v = glm::cross(along, u);
       }
       double angle = std::atan2(glm::dot(inward, v), glm::dot(inward, u));
       if (angle < -kSameDirection) angle += 2 * std::numbers::pi;
       // About the edge, angles grow towards `along` x inward, which is the normal or its opposite.
-      wings.push_back(
+      around.push_back(
           {angle, sideOf(user.polygon, user.reversed), sideOf(user.polygon, !user.reversed)});
     }
-    std::sort(wings.begin(), wings.end(), [](const Wing& a, const Wing& b) {
+    std::sort(around.begin(), around.end(), [](const PolygonAtEdge& a, const PolygonAtEdge& b) {
       return std::tie(a.angle, a.up) < std::tie(b.angle, b.up);
     });
-    for (std::size_t from = 0; from < wings.size();) {
+    for (std::size_t from = 0; from < around.size();) {
       std::size_t to = from + 1;
-      while (to < wings.size() && wings[to].angle - wings[to - 1].angle < kSameDirection) ++to;
-      std::stable_sort(wings.begin() + std::ptrdiff_t(from), wings.begin() + std::ptrdiff_t(to),
-                       [](const Wing& a, const Wing& b) { return a.backIsUp() > b.backIsUp(); });
+      while (to < around.size() && around[to].angle - around[to - 1].angle < kSameDirection) ++to;
+      std::stable_sort(around.begin() + std::ptrdiff_t(from), around.begin() + std::ptrdiff_t(to),
+                       [](const PolygonAtEdge& a, const PolygonAtEdge& b) {
+                         return a.backIsUp() > b.backIsUp();
+                       });
       from = to;
     }
   }

@@ -95,12 +95,12 @@ FormFactors Pipeline::computeFactors(std::optional<FormFactorPlan> plan, const S
       SharedTask task = SharedTask::form_factors;
       processes_->broadcastValue(task);
       step.emplace(*processes_);
-      JournalTold told;
+      FirstJournal first;
       if (journal_) {
-        told = {journal_->path(), journal_->key(), options_.journal.resume};
-        shared = std::make_unique<SharedJournal>(*journal_, told.path, told.resume);
+        first = {journal_->path(), journal_->key(), options_.journal.resume};
+        shared = std::make_unique<SharedJournal>(*journal_, first.path, first.resume);
       }
-      told.broadcast(*processes_);
+      first.broadcast(*processes_);
     }
     RowJournal* const journal = shared ? shared.get() : static_cast<RowJournal*>(journal_.get());
     FormFactors factors = computeFormFactors(*plan, progress_, journal, processes_);
