@@ -5,17 +5,19 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/figure_text.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
 
 namespace {
 
-/// Whole numbers have all their digits.
+/// Large whole numbers have all their digits: "20,000,000".
 std::string boundText(double bound) {
+  constexpr double kLarge = 1e4;
   constexpr double kMostDigits = 1e9;
-  const bool whole = bound == std::trunc(bound) && std::abs(bound) < kMostDigits;
-  return whole ? fmt::format("{:.0f}", bound) : fmt::format("{:g}", bound);
+  const bool counts = bound >= kLarge && bound <= kMostDigits && bound == std::trunc(bound);
+  return counts ? countText(std::size_t(bound)) : fmt::format("{:g}", bound);
 }
 
 }  // namespace

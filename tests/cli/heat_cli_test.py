@@ -197,7 +197,7 @@ class Heat(CliTest):
             self.refuse(*small, "--condition", "*.temperature=300", "--condition", condition,
                         words=words)
         self.refuse(*small, "--condition", "*.temperature=300", "--sky-temperature", "1e80",
-                    words=["--sky-temperature", "0 to 1e+08"])
+                    words=["--sky-temperature", "0 to 100,000,000"])
 
     def test_all_surfaces_without_emissivity_are_named(self):
         self.refuse("heat", "box.obj", *SMALL, "--condition", "*.temperature=300",

@@ -74,7 +74,7 @@ TEST(Options, AreValidByDefault) {
 
 TEST(Options, SayTheirRange) {
   const auto says = [](auto options) { return test::errorOf([&] { options.validate(); }); };
-  EXPECT_EQ(says(MeshOptions{.patches = 0}), "patches: 0 is out of range; 1 to 20000000");
+  EXPECT_EQ(says(MeshOptions{.patches = 0}), "patches: 0 is out of range; 1 to 20,000,000");
   EXPECT_EQ(says(MeshOptions{.max_edge = -1}), "max_edge: -1 m is out of range; 0 or more");
   EXPECT_EQ(says(SolveOptions{.tolerance = 1}),
             "tolerance: 1 is out of range; above 0 and below 1");
