@@ -40,7 +40,8 @@ std::vector<Index> wantedRows(const PatchMesh& mesh, const std::vector<Index>& u
 
 KnownRows EmitterRows::compute(Progress& progress) const {
   const Stopwatch watch;
-  std::vector<KnownRow> computed = rows->compute(progress);
+  std::vector<KnownRow> computed;
+  if (rows) computed = rows->compute(progress);
   return {std::move(computed), seconds + watch.seconds()};
 }
 

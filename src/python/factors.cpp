@@ -17,7 +17,7 @@ namespace {
 /// Given options that the method does not use, and that are not what they are by default.
 std::vector<std::string> unusedOptions(const py::dict& given, const std::string& method) {
   auto options = optionsFrom<FormFactorOptions>(given);
-  options.method = named(kMethodNames, method).value();
+  options.method = named(kMethodNames, method).value_or(options.method);
   const py::list usual = described(FormFactorOptions());
   std::vector<std::string> unused;
   for (std::size_t k = 0; const py::handle& option : described(options)) {
