@@ -37,8 +37,11 @@ constexpr double kRays = 3e-2;
 constexpr double kMostSeconds = 4;
 /// Values in single precision, of a row's norm.
 constexpr double kRounding = 1e-7;
-/// What closed forms hold, of a row's norm, and values that are rounding alone.
+/// A sum of rounded values.
+constexpr double kSingleSum = 1e-6;
+/// What closed forms hold, of a row's norm or, all off alike, of its sum.
 constexpr double kClosedForm = 1e-5;
+/// Values that are rounding alone.
 constexpr double kNothing = 1e-12;
 /// Of a hemicube's light, on no account. Both ends of a pair are estimates that are off by some per
 /// cent, and nobody says by how much: a solution is refused as unbalanced from here on
@@ -177,9 +180,9 @@ class Checker {
         fault("account negative " + by, "row {}: fronts {}, backs {}, sky {}", i, f.fronts[i],
               f.backs[i], f.sky[i]);
       }
-      const double stated = has_errors ? terms * f.error[i] : 0.0;
+      const double stated = has_errors ? terms * f.error[i] + kClosedForm : kSingleSum;
       const double all = sum + f.backs[i] + f.sky[i];
-      if (f.matrix.area()[i] > 0 && !(std::abs(all - 1) <= 1e-6 + stated)) {
+      if (f.matrix.area()[i] > 0 && !(std::abs(all - 1) <= stated)) {
         fault("row sum " + by, "row {}: {} + {} + {} = {}, stated {}", i, sum, f.backs[i], f.sky[i],
               all, stated);
       }
