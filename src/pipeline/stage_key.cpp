@@ -6,7 +6,9 @@
 
 #include "base/hash.h"
 #include "base/option_list.h"
+#include "radiosity/elements.h"
 #include "radiosity/names.h"
+#include "radiosity/solve.h"
 
 namespace radiosity {
 
@@ -19,17 +21,19 @@ constexpr std::pair<std::string_view, std::string_view> kIdentities[] = {
     {"solution", "solution changed"},       {"conditions", "conditions changed"},
     {"reflectance", "reflectance changed"}, {"sources", "sources changed"}};
 
-template <class Options>
-bool hasIfChanged(std::string_view name) {
-  return std::ranges::any_of(optionLines(Options()), [&](const Option& option) {
+/// True for options of these structs that a key lacks where they have their default.
+template <class... Options>
+bool isNamedIfChanged(std::string_view name) {
+  const auto named = [name](const Option& option) {
     return option.line.in_key == InKey::if_changed && option.line.optionName() == name;
-  });
+  };
+  return (std::ranges::any_of(optionLines(Options()), named) || ...);
 }
 
-/// True for options that a key lacks where they have their default.
+/// The same for those of every stage.
 bool isNamedIfSet(std::string_view name) {
-  return hasIfChanged<FormFactorOptions>(name) || hasIfChanged<GatherOptions>(name) ||
-         hasIfChanged<HeatOptions>(name);
+  return isNamedIfChanged<MeshOptions, FormFactorOptions, SolveOptions, GatherOptions,
+                          ElementOptions, HeatOptions>(name);
 }
 
 }  // namespace
