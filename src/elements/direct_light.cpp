@@ -288,7 +288,7 @@ double EmitterLight::clipped(const SurfacePoint& point, const Lights& lights,
 /// stands for nearly the same light.
 void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, std::size_t count,
                         Looks& looks) const {
-  const Vec3 eye = scaled(point.position);
+  const Vec3 eye = scaled(point.inner);
   const std::size_t first = looks.count;
   std::optional<EmitterAim> aim;
   std::size_t at = 0;
@@ -313,7 +313,7 @@ void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, std::
   }
   looks.count = count;
   const std::size_t fresh = count - first;
-  rays_.see({point.position, point.normal, surface_.owners[point.owners]},
+  rays_.see({point.inner, point.normal, surface_.owners[point.owners]},
             std::span(looks.to).subspan(first, fresh),
             std::span(looks.polygon).subspan(first, fresh),
             std::span(looks.seen).subspan(first, fresh));
@@ -322,7 +322,7 @@ void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, std::
 /// Sums the light of the emitters that an element may see, or of all if `lights` is null.
 void EmitterLight::sumUnblocked(const SurfacePoint& point, const Lights* lights,
                                 Unblocked& light) const {
-  const Vec3 eye = scaled(point.position);
+  const Vec3 eye = scaled(point.inner);
   const std::size_t bands = light.whole.size();
   const auto add = [&](Index e) {
     const Emitter& emitter = emitters_[e];

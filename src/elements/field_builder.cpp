@@ -250,12 +250,13 @@ class FieldBuilder {
     SurfacePoint middle;
     middle.place = 0.5 * (points_[a].place + points_[b].place);
     middle.position = middle.place + edge.inset;
+    middle.inner = middle.place + edge.inner;
     middle.normal = points_[a].normal == points_[b].normal
                         ? points_[a].normal
                         : normalBetween(points_[a].normal + points_[b].normal, node);
     middle.owners = edge.owners;
     const Index v = edge.middle = addPoint(middle, node);
-    const SurfaceEdge half{kNone, edge.owners, edge.inset};
+    const SurfaceEdge half{kNone, edge.owners, edge.inset, edge.inner};
     edges_.edge(a, v, 0, half);
     edges_.edge(v, b, 0, half);
     return v;
@@ -268,7 +269,7 @@ class FieldBuilder {
       centre.place += 0.25 * points_[v].place;
       normal += points_[v].normal;
     }
-    centre.position = centre.place;
+    centre.position = centre.inner = centre.place;
     centre.normal = normalBetween(normal, node);
     centre.owners = mesh_.polygon[surface_.roots.patch[node.root]];
     return addPoint(centre, node);

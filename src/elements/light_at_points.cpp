@@ -44,7 +44,7 @@ SurfacePoint LightAtPoints::Inside::pointAt(std::size_t root, const Vec3& at,
                                             const Vec2& place) const {
   const ElementSurface& surface = sources.surface();
   const Index patch = surface.roots.patch[root];
-  SurfacePoint point{at, at, mesh.normal[patch], mesh.polygon[patch]};
+  SurfacePoint point{at, at, at, mesh.normal[patch], mesh.polygon[patch]};
   if (surface.curved[root] == 0) return point;
   const auto normal = [&](std::size_t corner) {
     return surface.points[surface.vertex[root][corner]].normal;

@@ -111,8 +111,8 @@ LightSources::LightSources(const PatchMesh& mesh, const PatchMaterials& material
       options_(options),
       progress_(progress),
       bands_(std::size_t(materials.bands)),
-      surface_(mesh, options.crease, kDirectInset),
-      indirect_surface_(mesh, options.crease, kIndirectInset),
+      surface_(mesh, options.crease, kDirectInset, kIndirectInset),
+      indirect_surface_(mesh, options.crease, kIndirectInset, kIndirectInset),
       lookup_(mesh, surface_.roots),
       rays_(mesh),
       elements_(mesh) {

@@ -16,6 +16,8 @@ namespace {
 constexpr double kLeast = 1e-5;
 /// Of two roots in one plane, one is a sliver if its inset is less than this share of the other's.
 constexpr double kSliver = 0.2;
+/// The least cosine between the way inwards and a smooth edge that leads there.
+constexpr double kInwards = 0.5;
 
 /// Whether a point in the plane of a convex root lies on it.
 bool isOn(const PatchMesh& mesh, const ElementRoots& roots, std::size_t root, const Vec3& p) {
@@ -39,13 +41,17 @@ struct ElementSurface::RootEdge {
   bool forward;  ///< from low to high
 };
 
-ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset)
-    : diagonal(boxOf(mesh.vertices).diagonal()), roots(elementRoots(mesh)), inset_(inset) {
+ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset,
+                               const Inset& inner)
+    : diagonal(boxOf(mesh.vertices).diagonal()),
+      roots(elementRoots(mesh)),
+      insets_(findInsets(mesh, inset)),
+      inner_insets_(findInsets(mesh, inner)) {
   for (Index p = 0; p < mesh.polygons.size(); ++p) owners.push_back({p});
   addVertices(mesh, cornerGroups(mesh, crease));
-  for (std::size_t r = 0; r < roots.size(); ++r) insets_.push_back(findInset(mesh, r));
   addEdges(mesh, crease);
-  insetCorners(mesh);
+  insetCorners(mesh, inset, insets_, &SurfaceEdge::inset, &SurfacePoint::position);
+  insetCorners(mesh, inner, inner_insets_, &SurfaceEdge::inner, &SurfacePoint::inner);
 }
 
 Index ElementSurface::ownersOf(std::vector<Index> polygons) {
@@ -97,8 +103,8 @@ void ElementSurface::addVertices(const PatchMesh& mesh, const CornerGroups& grou
       }
       if (vertex[r][k] != kNone) continue;
       vertex[r][k] = Index(points.size());
-      points.push_back(
-          {mesh.vertices[v], mesh.vertices[v], mesh.normal[patch], mesh.polygon[patch]});
+      const Vec3& place = mesh.vertices[v];
+      points.push_back({place, place, place, mesh.normal[patch], mesh.polygon[patch]});
     }
     if (roots.cornerCount(r) == 3) vertex[r][3] = kNone;
   }
@@ -140,19 +146,23 @@ const ElementSurface::RootEdge* ElementSurface::partner(const PatchMesh& mesh,
   return found;
 }
 
-double ElementSurface::findInset(const PatchMesh& mesh, std::size_t root) const {
-  const std::size_t n = roots.cornerCount(root);
-  double longest = 0;
-  Vec3 twice(0.0);
-  const Vec3 base = mesh.vertices[roots.corner[root][0]];
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3 a = mesh.vertices[roots.corner[root][k]];
-    const Vec3 b = mesh.vertices[roots.corner[root][(k + 1) % n]];
-    longest = std::max(longest, glm::distance(a, b));
-    twice += glm::cross(a - base, b - base);
+std::vector<double> ElementSurface::findInsets(const PatchMesh& mesh, const Inset& inset) const {
+  std::vector<double> insets;
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    const std::size_t n = roots.cornerCount(r);
+    double longest = 0;
+    Vec3 twice(0.0);
+    const Vec3 base = mesh.vertices[roots.corner[r][0]];
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec3 a = mesh.vertices[roots.corner[r][k]];
+      const Vec3 b = mesh.vertices[roots.corner[r][(k + 1) % n]];
+      longest = std::max(longest, glm::distance(a, b));
+      twice += glm::cross(a - base, b - base);
+    }
+    const double height = longest > 0 ? glm::length(twice) / longest : 0;
+    insets.push_back(std::min(inset.of_diagonal * diagonal, inset.of_height * height));
   }
-  if (!(longest > 0)) return 0;
-  return std::min(inset_.of_diagonal * diagonal, inset_.of_height * glm::length(twice) / longest);
+  return insets;
 }
 
 /// Whether one of two roots of one polygon is a sliver. What almost touches has cut it off, as a
@@ -205,7 +215,9 @@ void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
         const Vec3 along = points[b].place - points[a].place;
         const double length = glm::length(along);
         if (length > 0) {
-          fresh.inset = glm::cross(mesh.normal[patch], along / length) * insets_[edge.root];
+          const Vec3 inward = glm::cross(mesh.normal[patch], along / length);
+          fresh.inset = inward * insets_[edge.root];
+          fresh.inner = inward * inner_insets_[edge.root];
         }
       }
       edges.edge(a, b, tag[edge.root][edge.number], fresh);
@@ -215,24 +227,25 @@ void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
 }
 
 /// Moves corners on borders to the inner side of all their borders.
-void ElementSurface::insetCorners(const PatchMesh& mesh) {
+void ElementSurface::insetCorners(const PatchMesh& mesh, const Inset& inset,
+                                  std::span<const double> insets, Vec3 SurfaceEdge::*of_edge,
+                                  Vec3 SurfacePoint::*position) {
   std::vector<Vec3> inward(points.size(), Vec3(0.0));
-  std::vector<double> most(points.size(), inset_.of_diagonal * diagonal);  // distance
+  std::vector<double> most(points.size(), inset.of_diagonal * diagonal);  // distance
   std::vector<std::uint8_t> border(points.size(), 0);
   for (Index r = 0; r < roots.size(); ++r) {
     const auto n = Index(roots.cornerCount(r));
-    const double inset = insets_[r];
     for (Index k = 0; k < n; ++k) {
-      most[vertex[r][k]] = std::min(most[vertex[r][k]], inset);
+      most[vertex[r][k]] = std::min(most[vertex[r][k]], insets[r]);
       if (tag[r][k] == 0) continue;
       for (const Index v : {vertex[r][k], vertex[r][(k + 1) % n]}) {
-        inward[v] += edges.find(vertex[r][k], vertex[r][(k + 1) % n], tag[r][k])->inset;
+        inward[v] += edges.find(vertex[r][k], vertex[r][(k + 1) % n], tag[r][k])->*of_edge;
         border[v] = 1;
       }
     }
   }
   // If opposite borders cancel, as around the end of a wall, we move towards any root's middle.
-  const double least = 1e-3 * inset_.of_diagonal * diagonal;
+  const double least = 1e-3 * inset.of_diagonal * diagonal;
   for (Index r = 0; r < roots.size(); ++r) {
     for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
       const Index v = vertex[r][k];
@@ -241,24 +254,61 @@ void ElementSurface::insetCorners(const PatchMesh& mesh) {
       }
     }
   }
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    const double length = glm::length(inward[v]);
-    inward[v] = length > 0 ? inward[v] / length : Vec3(0.0);
-    // At a smooth edge, the plane of one facet soon leaves the surface of the other.
-    if (points[v].owners >= mesh.polygons.size()) most[v] = std::min(most[v], kLeast * diagonal);
+  for (Vec3& along : inward) {
+    const double length = glm::length(along);
+    along = length > 0 ? along / length : Vec3(0.0);
   }
-  leaveSlivers(mesh, inward, most);
+  keepToCurves(mesh, inset, inward, most);
+  leaveSlivers(mesh, insets, inward, most);
   for (std::size_t v = 0; v < points.size(); ++v) {
-    points[v].position = points[v].place + inward[v] * most[v];
+    points[v].*position = points[v].place + inward[v] * most[v];
+  }
+}
+
+/// Corners between facets move along the smooth edge that leads farthest inwards: the plane of one
+/// facet soon leaves the surface of the other. Without such an edge they stay close.
+void ElementSurface::keepToCurves(const PatchMesh& mesh, const Inset& inset, std::span<Vec3> inward,
+                                  std::span<double> distance) const {
+  const double largest = inset.of_diagonal * diagonal;
+  const double near = kLeast * diagonal;
+  if (largest <= near) return;
+  struct Way {
+    Vec3 along{0.0};  // unit
+    double distance = 0;
+    double depth = 0;
+  };
+  std::vector<Way> ways(points.size());
+  for (Index r = 0; r < roots.size(); ++r) {
+    const auto n = Index(roots.cornerCount(r));
+    for (Index k = 0; k < n; ++k) {
+      if (tag[r][k] != 0) continue;
+      const std::array<Index, 2> ends = {vertex[r][k], vertex[r][(k + 1) % n]};
+      const double length = glm::distance(points[ends[0]].place, points[ends[1]].place);
+      if (!(length > 0)) continue;
+      const double most = std::min(largest, inset.of_height * length);
+      for (const std::size_t end : {0, 1}) {
+        const Index v = ends[end];
+        const Vec3 along = (points[ends[1 - end]].place - points[v].place) / length;
+        const double cosine = glm::dot(along, inward[v]);
+        if (cosine > kInwards && cosine * most > ways[v].depth) {
+          ways[v] = {along, most, cosine * most};
+        }
+      }
+    }
+  }
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (points[v].owners < mesh.polygons.size()) continue;
+    distance[v] = ways[v].depth > 0 ? ways[v].distance : std::min(distance[v], near);
+    if (ways[v].depth > 0) inward[v] = ways[v].along;
   }
 }
 
 /// A corner of a sliver and of larger roots goes into the larger ones, as far as these ask for.
 /// What it sees through the gap that cut off the sliver is not the light of the larger root.
-void ElementSurface::leaveSlivers(const PatchMesh& mesh, std::span<const Vec3> inward,
-                                  std::span<double> distance) const {
+void ElementSurface::leaveSlivers(const PatchMesh& mesh, std::span<const double> insets,
+                                  std::span<const Vec3> inward, std::span<double> distance) const {
   for (Index r = 0; r < roots.size(); ++r) {
-    const double inset = insets_[r];
+    const double inset = insets[r];
     for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
       const Index v = vertex[r][k];
       if (points[v].owners >= mesh.polygons.size() || inset <= distance[v]) continue;

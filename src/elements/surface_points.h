@@ -24,6 +24,7 @@ struct Inset {
 struct SurfacePoint {
   Vec3 place{0.0};     ///< of the element's corner
   Vec3 position{0.0};  ///< where light is evaluated
+  Vec3 inner{0.0};     ///< where rays to emitters start
   Vec3 normal{0.0};    ///< unit; where facets meet smoothly, the mean of theirs
   Index owners = 0;    ///< into ElementSurface::owners
 };
@@ -32,7 +33,8 @@ struct SurfacePoint {
 struct SurfaceEdge {
   Index middle = kNone;  ///< vertex
   Index owners = 0;
-  Vec3 inset{0.0};
+  Vec3 inset{0.0};  ///< of the middle's position
+  Vec3 inner{0.0};  ///< likewise, of where rays to emitters start
 };
 
 /// The edges of one field's elements, by their ends. Roots on either side of a border or a crease
@@ -68,7 +70,8 @@ class EdgeMap {
 /// The roots of elements over a mesh, and the vertices at their corners. Neighbours share a vertex
 /// if they are on one smooth side (cornerGroups()), and an edge if nothing else touches it.
 struct ElementSurface {
-  ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset);
+  /// `inner`: the inset of SurfacePoint::inner.
+  ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset, const Inset& inner);
 
   double diagonal = 0;  ///< metres
   ElementRoots roots;
@@ -84,15 +87,19 @@ struct ElementSurface {
   struct RootEdge;
   void addVertices(const PatchMesh& mesh, const CornerGroups& groups);
   void addEdges(const PatchMesh& mesh, double crease);
-  double findInset(const PatchMesh& mesh, std::size_t root) const;
+  std::vector<double> findInsets(const PatchMesh& mesh, const Inset& inset) const;
   bool besideSliver(const PatchMesh& mesh, std::size_t a, std::size_t b) const;
-  void insetCorners(const PatchMesh& mesh);
-  void leaveSlivers(const PatchMesh& mesh, std::span<const Vec3> inward,
+  void insetCorners(const PatchMesh& mesh, const Inset& inset, std::span<const double> insets,
+                    Vec3 SurfaceEdge::*of_edge, Vec3 SurfacePoint::*position);
+  void keepToCurves(const PatchMesh& mesh, const Inset& inset, std::span<Vec3> inward,
                     std::span<double> distance) const;
+  void leaveSlivers(const PatchMesh& mesh, std::span<const double> insets,
+                    std::span<const Vec3> inward, std::span<double> distance) const;
   const RootEdge* partner(const PatchMesh& mesh, std::span<const RootEdge> run, const RootEdge& of,
                           double cosine) const;
-  Inset inset_;
-  std::vector<double> insets_;  ///< R, metres
+  // R, metres.
+  std::vector<double> insets_;
+  std::vector<double> inner_insets_;
   Index ownersOf(std::vector<Index> polygons);
 };
 

@@ -236,6 +236,48 @@ Scene boxOnFloor() {
 }
 
 /// The floor behind the block is dark up to the very contact, and lit before it.
+/// A ring of `sides` planar faces about the vertical axis, turned outward.
+void ring(SceneBuilder& builder, Index surface, int sides, const Vec2& low, const Vec2& high) {
+  const auto corner = [&](int k, const Vec2& at) {
+    const double angle = 2 * std::numbers::pi * k / sides;
+    return Vec3(at.x * std::cos(angle), at.x * std::sin(angle), at.y);
+  };
+  for (int k = 0; k < sides; ++k) {
+    builder.face(surface,
+                 {corner(k, low), corner(k + 1, low), corner(k + 1, high), corner(k, high)});
+  }
+}
+
+// Paper of a lampshade, turn over turn: the lower border of the upper turn is hidden by 10 um
+// behind the lower one. All that shows sees nothing but the walls around, which shine with an
+// exitance of 1; they are so many emitters that light comes by rays, 64 a point (2% of noise).
+TEST(Elements, ABorderHiddenByAHairDoesNotDarkenWhatShows) {
+  SceneBuilder builder;
+  std::vector<Vec2> around;
+  for (int k = 0; k < 140; ++k) {
+    const double angle = 2 * std::numbers::pi * k / 140;
+    around.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  builder.prism(builder.surface("walls", 0.0, 1.0), around, -1, 1, false);
+  const Index shade = builder.surface("shade", 0.0);
+  ring(builder, shade, 16, {0.5, -0.5}, {0.5, 0});
+  ring(builder, shade, 16, {0.5 - 1e-5, -1e-3}, {0.5, 0.5});
+  const Lit lit(builder.scene(), 300, {.tolerance = 0.5, .smallest_edge = 0.1, .rays = 64});
+  ASSERT_GT(lit.elements.report.emitters, 128u);
+  std::size_t looked = 0;
+  for (std::size_t i = 0; i < lit.mesh.size(); ++i) {
+    if (lit.mesh.surface_names[lit.mesh.surface[i]] != "shade/shade") continue;
+    const Vec3 middle = lit.mesh.centroid[i];
+    for (const Index v : lit.mesh.outline(i)) {
+      const Vec3 at = glm::mix(lit.mesh.vertices[v], middle, 0.1);
+      EXPECT_NEAR(lit.at(lit.elements.direct, i, at), 1.0, 0.06)
+          << at.x << " " << at.y << " " << at.z;
+      ++looked;
+    }
+  }
+  EXPECT_GE(looked, 4u * 32u);
+}
+
 TEST(Elements, NoLightReachesUnderAContact) {
   const Lit lit(boxOnFloor(), 300);
   for (const double y : {-0.31, 0.003, 0.3}) {
@@ -388,7 +430,7 @@ TEST(Elements, SliversDoNotHoldTheVerticesOfTheirNeighbours) {
   Progress quiet;
   const PatchMesh mesh = meshScene(builder.scene(), {.patches = 40}, quiet).mesh;
   const Inset inset{0.0015, 0.21};
-  const ElementSurface surface(mesh, 30, inset);
+  const ElementSurface surface(mesh, 30, inset, inset);
   const double whole = inset.of_diagonal * surface.diagonal;
   std::size_t large = 0;
   for (std::size_t r = 0; r < surface.roots.size(); ++r) {
