@@ -5,9 +5,11 @@
 #include <array>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 #include "radiosity/base.h"
+#include "radiosity/spelling.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -34,12 +36,16 @@ struct MethodTraits {
   bool counts_unknowns = false;
   /// The share of its light that an energy account may be off, and the cure if it is off by more.
   double imbalance = std::numeric_limits<double>::infinity();
-  std::string_view cure{};
+  std::string (*cure)() = [] { return std::string(); };
 
   constexpr bool uses(std::string_view option) const {
     return std::find(options.begin(), options.end(), option) != options.end();
   }
 };
+
+inline std::string cureOfMatrix() {
+  return "correct the matrix, or its areas (" + spelled("areas") + ")";
+}
 
 inline constexpr std::array kMethods{
     MethodTraits{.method = FormFactorMethod::automatic,
@@ -54,7 +60,11 @@ inline constexpr std::array kMethods{
                  .options = {"tolerance", "closure"},
                  .tolerance = 1e-3,
                  .imbalance = 0.01,
-                 .cure = "give --closure enforce, or a smaller --tolerance"},
+                 .cure =
+                     [] {
+                       return "give " + spelled("closure", "enforce") + ", or a smaller " +
+                              spelled("tolerance");
+                     }},
     MethodTraits{.method = FormFactorMethod::rays,
                  .word = "rays",
                  .summary = "area to area, by counting rays",
@@ -62,7 +72,11 @@ inline constexpr std::array kMethods{
                  .tolerance = 1e-2,
                  .counts_unknowns = true,
                  .imbalance = 0.01,
-                 .cure = "give a smaller --tolerance, or --method exact"},
+                 .cure =
+                     [] {
+                       return "give a smaller " + spelled("tolerance") + ", or " +
+                              spelled("method", "exact");
+                     }},
     // A patch is represented by a point: form factors are off by 8% to 30%
     // (src/formfactor/README.md), and an account sums over many of them.
     MethodTraits{.method = FormFactorMethod::hemicube,
@@ -71,13 +85,13 @@ inline constexpr std::array kMethods{
                  .options = {"seed", "resolution", "symmetrize", "near", "random-turns", "eye"},
                  .symmetric = false,
                  .imbalance = 0.1,
-                 .cure = "give --symmetrize, a higher --resolution, or --method exact"},
-    MethodTraits{.method = FormFactorMethod::matrix,
-                 .word = "matrix",
-                 .cure = "correct the matrix, or its areas (--areas)"},
-    MethodTraits{.method = FormFactorMethod::file,
-                 .word = "file",
-                 .cure = "correct the matrix, or its areas (--areas)"}};
+                 .cure =
+                     [] {
+                       return "give " + spelled("symmetrize") + ", a higher " +
+                              spelled("resolution") + ", or " + spelled("method", "exact");
+                     }},
+    MethodTraits{.method = FormFactorMethod::matrix, .word = "matrix", .cure = cureOfMatrix},
+    MethodTraits{.method = FormFactorMethod::file, .word = "file", .cure = cureOfMatrix}};
 
 /// The methods that `automatic` chooses from, the most accurate one first.
 inline constexpr std::array kAutomaticChoices{FormFactorMethod::exact, FormFactorMethod::rays};

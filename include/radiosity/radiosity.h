@@ -27,6 +27,7 @@
 #include "radiosity/row_journal.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
+#include "radiosity/spelling.h"
 #include "radiosity/surface_groups.h"
 #include "radiosity/tables.h"
 #include "radiosity/version.h"

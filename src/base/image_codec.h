@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/spelling.h"
+
 namespace radiosity {
 
 /// The samples of a file as stored, row by row from the top, the channels of a pixel together.
@@ -43,15 +45,21 @@ struct EncodedImage {
   std::string problem;
 };
 
+/// The largest image that is unpacked, and the option that says so.
+struct ImageLimit {
+  double pixels = 0;
+  std::string option = spelled("max_image");
+};
+
 class ImageCodec {
  public:
   virtual ~ImageCodec() = default;
-  /// Reads the first four channels of the regular file `path`; its first bytes tell the format. An
-  /// image of more than `most_pixels` is not unpacked.
-  virtual DecodedImage read(const std::string& path, double most_pixels) const = 0;
+  /// Reads the first four channels of the regular file `path`; its first bytes tell the format. A
+  /// larger image is not unpacked.
+  virtual DecodedImage read(const std::string& path, const ImageLimit& most) const = 0;
   /// The same from memory; `name` is for messages.
   virtual DecodedImage decode(const std::string& name, std::span<const unsigned char> bytes,
-                              double most_pixels) const = 0;
+                              const ImageLimit& most) const = 0;
   /// The format is that of the extension of `path`; nothing is written there.
   virtual EncodedImage encode(const std::string& path, const ImageToEncode& image) const = 0;
 };

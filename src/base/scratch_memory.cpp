@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "base/process_memory.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 
@@ -40,9 +41,9 @@ ScratchMemory::ScratchMemory(const std::string& folder, std::size_t resident)
   file_ = mkostemp(name.data(), O_CLOEXEC);
   if (file_ < 0) {
     throw RunError(
-        fmt::format("{}: no scratch file can be made here: {}; raise --memory-limit, or "
+        fmt::format("{}: no scratch file can be made here: {}; raise {}, or "
                     "write the output to another folder",
-                    folder, std::strerror(errno)));
+                    folder, std::strerror(errno), spelled("memory_limit")));
   }
   unlink(name.c_str());
 }
@@ -73,10 +74,11 @@ void ScratchMemory::addExtent(std::size_t bytes) {
   std::size_t end = 0;
   for (const Extent& extent : extents_) end += extent.bytes;
   const auto refuse = [&](int error) {
-    throw RunError(fmt::format(
-        "{}: a scratch file of {:.1f} GiB does not fit here: {}; make room, "
-        "raise --memory-limit or mesh with fewer patches",
-        folder_, double(end + bytes) / double(std::size_t(1) << 30), std::strerror(error)));
+    throw RunError(
+        fmt::format("{}: a scratch file of {:.1f} GiB does not fit here: {}; make room, "
+                    "raise {} or mesh with fewer patches",
+                    folder_, double(end + bytes) / double(std::size_t(1) << 30),
+                    std::strerror(error), spelled("memory_limit")));
   };
   // We allocate the space now: writing to a hole in the file on a full disk would kill the process.
   if (const int error = posix_fallocate(file_, off_t(end), off_t(bytes)); error != 0) refuse(error);

@@ -20,6 +20,7 @@
 #include "cli/console_progress.h"
 #include "cli/signal_guard.h"
 #include "cli/words.h"
+#include "radiosity/spelling.h"
 #include "radiosity/version.h"
 
 namespace radiosity::cli {
@@ -154,6 +155,7 @@ int runOther(int argc, char** argv, Processes& processes) {
 int main(int argc, char** argv) {
   using namespace radiosity;
   using namespace radiosity::cli;
+  setSpelling(spelledAsOption);
   openStandardFiles();
   ignoreSignalsOfWriting();
   if (!startedByMpi()) return judgeOutput(runProgram(argc, argv, nullptr));

@@ -15,8 +15,11 @@
 
 #include "base/figure_text.h"
 #include "base/near_names.h"
+#include "base/option_list.h"
 #include "base/printable.h"
 #include "radiosity/base.h"
+#include "radiosity/form_factors.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 
@@ -143,6 +146,23 @@ std::string shortened(const std::string& text) {
 }
 
 }  // namespace
+
+std::string spelledAsOption(std::string_view field, std::string_view value) {
+  // Of options that no struct lists.
+  constexpr std::pair<std::string_view, const char*> kNames[] = {{"groups", "group"},
+                                                                 {"conditions", "condition"},
+                                                                 {"table", "thermal"},
+                                                                 {"kd_is_srgb", "kd-is"}};
+  const std::string name(field);
+  OptionLine line{.name = name.c_str()};
+  for (const auto& [known, option] : kNames) {
+    if (field == known) line.option = option;
+  }
+  for (const Option& option : optionLines(FormFactorOptions())) {
+    if (field == option.line.name) line.option = option.line.option;
+  }
+  return fmt::format("--{}{}{}", line.optionName(), value.empty() ? "" : " ", value);
+}
 
 std::string oneLine(const std::string& text) {
   std::string line;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace radiosity::cli {
@@ -40,6 +41,9 @@ std::optional<std::string> nearest(const std::string& word,
 
 /// "; did you mean X?", or an empty text.
 std::string suggestion(const std::string& word, std::span<const std::string> candidates);
+
+/// Spells an option of the library (radiosity/spelling.h) as the command line does: "--near exact".
+std::string spelledAsOption(std::string_view field, std::string_view value);
 
 /// The text on one line: line breaks become "; ".
 std::string oneLine(const std::string& text);

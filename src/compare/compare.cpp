@@ -13,6 +13,7 @@
 #include "base/option_list.h"
 #include "base/parallel.h"
 #include "compare/differences.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 namespace {
@@ -190,9 +191,9 @@ void requireEnough(const LightField& a, const LightField& b, const Comparison& c
   if (of_a > 0 && of_b > 0 && (options.partial || std::min(of_a, of_b) >= kEnough)) return;
   std::string cure = fmt::format(
       "A spans {}, B {}; bring both into the same unit and axes, or allow points farther apart "
-      "with --match{}",
-      textOf(boxOf(a)), textOf(boxOf(b)),
-      of_a > 0 && of_b > 0 ? ", or compare what there is with --partial" : "");
+      "with {}{}",
+      textOf(boxOf(a)), textOf(boxOf(b)), spelled("match"),
+      of_a > 0 && of_b > 0 ? ", or compare what there is with " + spelled("partial") : "");
   if (share(opposite, comparison.area_a) > 0.01) {
     cure = fmt::format(
         "{:.3g}% of A has a surface of B in its place that faces the other way: "
@@ -220,9 +221,9 @@ void requireUnits(const LightField& a, const LightField& b, const CompareOptions
   if (a.relative == b.relative || options.fit_scale) return;
   const bool first = a.relative;
   throw InputError(fmt::format(
-      "{}: is coded for a screen (srgb8), of unknown exposure, and {} has a unit; add --fit-scale, "
+      "{}: is coded for a screen (srgb8), of unknown exposure, and {} has a unit; add {}, "
       "or export the light itself as floats",
-      first ? a.name : b.name, first ? b.name : a.name));
+      first ? a.name : b.name, first ? b.name : a.name, spelled("fit_scale")));
 }
 
 bool sameCells(const LightField& a, const LightField& b) {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "base/luminance.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 namespace {
@@ -49,15 +50,16 @@ void nameFactor(const CompareOptions& options, Comparison& comparison) {
       fmt::format("B times {:.4g} is within {:.3g}% of A, as it stands it is {:.3g}% off", scale,
                   100 * comparison.fitted_l2, 100 * before);
   std::string cause =
-      "the two differ by one factor: another exposure or unit; --fit-scale takes it out";
+      fmt::format("the two differ by one factor: another exposure or unit; {} takes it out",
+                  spelled("fit_scale"));
   if (near(std::numbers::pi)) {
-    cause =
-        "that is pi: B holds radiance where A holds radiosity (B = pi L); say --b-is radiance, or "
-        "--a-is radiosity";
+    cause = fmt::format(
+        "that is pi: B holds radiance where A holds radiosity (B = pi L); say {}, or {}",
+        spelled("b_is", "radiance"), spelled("a_is", "radiosity"));
   } else if (near(std::numbers::inv_pi)) {
-    cause =
-        "that is 1 / pi: B holds radiosity where A holds radiance (B = pi L); say --b-is "
-        "radiosity, or --a-is radiance";
+    cause = fmt::format(
+        "that is 1 / pi: B holds radiosity where A holds radiance (B = pi L); say {}, or {}",
+        spelled("b_is", "radiosity"), spelled("a_is", "radiance"));
   }
   comparison.notes.push_back({Severity::warning, what + "; " + cause});
 }

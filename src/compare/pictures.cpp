@@ -7,6 +7,7 @@
 
 #include "base/srgb.h"
 #include "compare/differences.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 namespace {
@@ -42,8 +43,8 @@ void requireComparable(const ImageFile& a, LightUnit a_is, const ImageFile& b, L
   if (a_coded == b_coded || options.fit_scale) return;
   throw InputError(fmt::format(
       "{} is tone-mapped (8 bits, for a screen) and {} holds light: render both as .exr; or, if it "
-      "has a plain sRGB curve and one exposure, add --fit-scale",
-      a_coded ? "A" : "B", a_coded ? "B" : "A"));
+      "has a plain sRGB curve and one exposure, add {}",
+      a_coded ? "A" : "B", a_coded ? "B" : "A", spelled("fit_scale")));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/timed_progress.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 namespace {
@@ -74,7 +75,7 @@ std::string raysReason(const std::optional<FormFactorPlan>& exact, bool fits,
                                        secondsText(rays.seconds));
   if (!exact) return text + "longer, as far as it was looked at";
   return fmt::format("{}{} and {}{}", text, secondsText(exact->seconds), bytesText(exact->bytes),
-                     fits ? "" : ", more than --memory-limit");
+                     fits ? "" : ", more than " + spelled("memory_limit"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mesh/patches/enclosures.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -46,9 +47,10 @@ void ClosedRows::report(const PatchMesh& mesh, FormFactorReport& report) const {
   report.notes.push_back(
       {Severity::warning,
        fmt::format("{} rows see too little for patches that are closed in; what they miss counts "
-                   "as sky: {}; do faces lie on others, or cross them? (without --faces-as-patches "
+                   "as sky: {}; do faces lie on others, or cross them? (without {} "
                    "they are cut)",
-                   refuted, joinNames(std::vector<std::string>(names.begin(), names.end())))});
+                   refuted, joinNames(std::vector<std::string>(names.begin(), names.end())),
+                   spelled("faces_as_patches"))});
 }
 
 std::size_t ClosedRows::rowOf(const PatchMesh& mesh, std::size_t patch) const {

@@ -12,6 +12,7 @@
 
 #include "base/geometry/box.h"
 #include "mesh/clusters/canonical_order.h"
+#include "radiosity/spelling.h"
 #include "scene/surface_names.h"
 #include "scene/text.h"
 
@@ -46,8 +47,8 @@ void noteBacks(const PatchMesh& mesh, FormFactors& result) {
   result.report.notes.push_back(
       {Severity::warning,
        fmt::format("{:.2f}% of the view ends on black backs, seen from behind: {}; flipped? "
-                   "(turn the faces over, --flip NAME, or --two-sided NAME)",
-                   100 * total, names)});
+                   "(turn the faces over, {}, or {})",
+                   100 * total, names, spelled("flip", "NAME"), spelled("two_sided", "NAME"))});
 }
 
 bool isOnePlane(const PlanarPolygons& polygons) {
@@ -84,11 +85,10 @@ std::optional<Note> nothingSeenNote(const PatchMesh& mesh) {
   constexpr const char* kWhat = "no surface sees another, all form factors are 0";
   const std::vector<std::string> solids = namesOfSolids(mesh);
   if (solids.empty()) {
-    return Note{
-        Severity::loud,
-        fmt::format("{}: if surfaces are to face each other, turn some over, --flip NAME, or "
-                    "give them both sides, --two-sided NAME",
-                    kWhat)};
+    return Note{Severity::loud,
+                fmt::format("{}: if surfaces are to face each other, turn some over, {}, or "
+                            "give them both sides, {}",
+                            kWhat, spelled("flip", "NAME"), spelled("two_sided", "NAME"))};
   }
   return Note{
       Severity::loud,

@@ -4,6 +4,7 @@
 
 #include "base/hash.h"
 #include "formfactor/method.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 
@@ -28,28 +29,27 @@ std::uint64_t checksumOfMesh(const PatchMesh& mesh) {
 }  // namespace
 
 void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
+  constexpr const char* kNeedsAllRows =
+      " needs all rows in one process: leave it out, or start the program without mpirun";
   const MethodTraits& method = traitsOf(options.method);
   const bool automatic = options.method == FormFactorMethod::automatic;
   if (!automatic && method.uses("eye") && options.eye == EyeChoice::gl) {
     throw InputError(
-        "under mpirun hemicubes are drawn by the processor: give --eye cpu or auto, or start the "
-        "program "
-        "without mpirun");
+        fmt::format("under mpirun hemicubes are drawn by the processor: give {} or auto, or start "
+                    "the program without mpirun",
+                    spelled("eye", "cpu")));
   }
   if (options.symmetrize) {
-    throw InputError(
-        "--symmetrize needs all rows in one process: leave it out, or start the program without "
-        "mpirun");
+    throw InputError(spelled("symmetrize") + kNeedsAllRows);
   }
   if (options.closure == ClosureMode::enforce && !method.counts_unknowns) {
-    throw InputError(
-        "--closure enforce needs all rows in one process: leave it out, or start the "
-        "program without mpirun");
+    throw InputError(spelled("closure", "enforce") + kNeedsAllRows);
   }
   if (mesh.clusters && !method.counts_unknowns && !automatic) {
     throw InputError(
-        "under mpirun patches share unknowns where rays count between these: give --method rays "
-        "or more --patches, or start the program without mpirun");
+        fmt::format("under mpirun patches share unknowns where rays count between these: give {} "
+                    "or more {}, or start the program without mpirun",
+                    spelled("method", "rays"), spelled("patches")));
   }
 }
 

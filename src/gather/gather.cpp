@@ -17,6 +17,7 @@
 #include "gather/gpu_gatherer.h"
 #include "gather/passes.h"
 #include "mesh/patches/enclosures.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 namespace {
@@ -275,10 +276,10 @@ std::string messageOf(const GatherSummary& summary, const GatherOptions& options
   if (summary.status == GatherStatus::unbalanced) {
     return fmt::format(
         "energy does not balance: after {}, {:.3g}% of the light {}; not usable; patches are too "
-        "large for points to stand for them: give more --patches, or solve by the matrix "
+        "large for points to stand for them: give more {}, or solve by the matrix "
         "(radiosity solve)",
         passes, 100 * std::abs(worstImbalance(last)),
-        worstImbalance(last) > 0 ? "is missing" : "is too much");
+        worstImbalance(last) > 0 ? "is missing" : "is too much", spelled("patches"));
   }
   if (summary.status == GatherStatus::converged) {
     return fmt::format("converged: {}, last change {:.2e} of the largest emission; {}", passes,

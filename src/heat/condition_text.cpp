@@ -8,6 +8,7 @@
 #include "base/csv.h"
 #include "base/parse.h"
 #include "heat/conditions.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -205,7 +206,7 @@ std::vector<GivenCondition> parseConditionTable(const std::string& origin, std::
 
 GivenCondition parseSetting(const std::string& text) {
   GivenCondition given;
-  given.origin = "--condition " + text;
+  given.origin = spelled("conditions", text);
   // Names may contain dots and equals signs: the value begins after the last '=', the property
   // after the last '.' before it.
   const std::size_t equals = text.rfind('=');

@@ -12,7 +12,7 @@ namespace radiosity {
 
 /// The values that one line gives for the surfaces that it names; missing ones are empty.
 struct GivenCondition {
-  std::string origin;  ///< "walls.csv:3", "--condition lamp.power=60"
+  std::string origin;  ///< "walls.csv:3", "conditions='lamp.power=60'"
   std::string name;
   std::optional<std::vector<Emissivity>> emissivity;
   bool emissivity_of_material = false;  ///< the word `material` in its place

@@ -10,6 +10,7 @@
 #include "base/near_names.h"
 #include "heat/condition_targets.h"
 #include "heat/condition_text.h"
+#include "radiosity/spelling.h"
 #include "radiosity/surface_groups.h"
 #include "scene/text.h"
 
@@ -285,8 +286,8 @@ ConditionText readConditionText(const std::string& csv_path, std::span<const std
                                 std::span<const std::string> groups) {
   if (csv_path.empty() && settings.empty()) {
     throw InputError(
-        "no conditions are given: name a table of them, --thermal FILE.csv, or give them by name, "
-        "--condition NAME.temperature=500");
+        fmt::format("no conditions are given: name a table of them, {}, or give them by name, {}",
+                    spelled("table", "FILE.csv"), spelled("conditions", "NAME.temperature=500")));
   }
   ConditionText text;
   text.origin = csv_path;

@@ -35,14 +35,14 @@ DecodedImage unopened(std::string problem) {
 
 /// The reason why an image of this size is refused; empty if it is not. Channels beyond four count
 /// as additional pixels: a reader holds all channels for a moment.
-std::string tooLarge(double width, double height, double channels, double most) {
-  if (width * height * std::max(channels / kMostChannels, 1.0) <= most) return {};
+std::string tooLarge(double width, double height, double channels, const ImageLimit& most) {
+  if (width * height * std::max(channels / kMostChannels, 1.0) <= most.pixels) return {};
   return OIIO::Strutil::fmt::format(
-      "has {:.0f} x {:.0f} pixels, --max-image allows {:g} million; make it smaller or allow more",
-      width, height, most / 1e6);
+      "has {:.0f} x {:.0f} pixels, {} allows {:g} million; make it smaller or allow more", width,
+      height, most.option, most.pixels / 1e6);
 }
 
-DecodedImage samplesOf(OIIO::ImageInput& input, double most_pixels) {
+DecodedImage samplesOf(OIIO::ImageInput& input, const ImageLimit& most) {
   const OIIO::ImageSpec& spec = input.spec();
   DecodedImage image;
   image.opened = true;
@@ -57,7 +57,7 @@ DecodedImage samplesOf(OIIO::ImageInput& input, double most_pixels) {
     image.problem = "it holds no picture";
     return image;
   }
-  image.too_large = tooLarge(spec.width, spec.height, spec.nchannels, most_pixels);
+  image.too_large = tooLarge(spec.width, spec.height, spec.nchannels, most);
   if (!image.too_large.empty()) return image;
   image.samples.resize(std::size_t(image.width) * std::size_t(image.height) *
                        std::size_t(image.channels));
@@ -94,14 +94,14 @@ class QuietErrors {
 using Bytes = std::span<const unsigned char>;
 
 /// Opens the image named `name` with `hints` if its format and size are accepted.
-DecodedImage decodeChecked(const std::string& name, Bytes start, double most_pixels,
+DecodedImage decodeChecked(const std::string& name, Bytes start, const ImageLimit& most,
                            const OIIO::ImageSpec& hints) {
   const std::string format = imageFormatOf(start, name);
   if (format.empty()) return unopened("of an unknown image format");
   if (const auto size = imageSizeOf(start, format)) {
     DecodedImage image;
     image.opened = true;
-    image.too_large = tooLarge(double(size->first), double(size->second), 1, most_pixels);
+    image.too_large = tooLarge(double(size->first), double(size->second), 1, most);
     if (!image.too_large.empty()) return image;
   }
   // We ask for the format by name: given a file's name, OpenImageIO 2.4 tries all its formats, and
@@ -110,27 +110,25 @@ DecodedImage decodeChecked(const std::string& name, Bytes start, double most_pix
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(format);
   if (!input) return unopened(OIIO::geterror());
   OIIO::ImageSpec spec;
-  return input->open(name, spec, hints) ? samplesOf(*input, most_pixels)
-                                        : unopened(input->geterror());
+  return input->open(name, spec, hints) ? samplesOf(*input, most) : unopened(input->geterror());
 }
 
 class OpenImageIoCodec final : public ImageCodec {
  public:
-  DecodedImage read(const std::string& path, double most_pixels) const override {
+  DecodedImage read(const std::string& path, const ImageLimit& most) const override {
     std::array<unsigned char, kImageHeaderBytes> start{};
     std::ifstream file(path, std::ios::binary);
     file.read(reinterpret_cast<char*>(start.data()), start.size());
-    return decodeChecked(path, Bytes(start).first(std::size_t(file.gcount())), most_pixels,
+    return decodeChecked(path, Bytes(start).first(std::size_t(file.gcount())), most,
                          readingHints());
   }
 
-  DecodedImage decode(const std::string& name, Bytes bytes, double most_pixels) const override {
+  DecodedImage decode(const std::string& name, Bytes bytes, const ImageLimit& most) const override {
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     OIIO::Filesystem::IOProxy* proxy = &memory;
     OIIO::ImageSpec hints = readingHints();
     hints.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<const void*>(&proxy));
-    return decodeChecked(name, bytes.first(std::min(bytes.size(), kImageHeaderBytes)), most_pixels,
-                         hints);
+    return decodeChecked(name, bytes.first(std::min(bytes.size(), kImageHeaderBytes)), most, hints);
   }
 
   /// Whether encoded bytes can be read again. OpenEXR leaves out lines for which it finds no

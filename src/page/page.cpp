@@ -12,6 +12,7 @@
 #include "page/html.h"
 #include "page/seen.h"
 #include "page/surfaces.h"
+#include "radiosity/spelling.h"
 #include "results/glb.h"
 
 namespace radiosity {
@@ -65,9 +66,10 @@ void addFactors(const FormFactors& factors, const ExchangeMatrix& matrix, const 
 
 void requireOneEstimate(const std::string& name, const ExchangeMatrix& matrix) {
   if (matrix.isSymmetric()) return;
-  throw InputError(name +
-                   ": a page keeps one form factor a pair, and these are two estimates of each; "
-                   "compute them with --symmetrize, or with --method exact or rays");
+  throw InputError(
+      fmt::format("{}: a page keeps one form factor a pair, and these are two estimates of each; "
+                  "compute them with {}, or with {} or rays",
+                  name, spelled("symmetrize"), spelled("method", "exact")));
 }
 
 }  // namespace
@@ -110,9 +112,10 @@ bool canWritePages() { return !page::pageTemplate().empty(); }
 void requirePageFits(const std::string& name, const PatchMesh& mesh) {
   if (mesh.unknowns() > kMostPageUnknowns) {
     throw InputError(fmt::format(
-        "{}: {} unknowns, and a page holds the form factors of at most {}; use fewer --patches, "
-        "e.g. --patches 4000",
-        name, countText(mesh.unknowns()), countText(kMostPageUnknowns)));
+        "{}: {} unknowns, and a page holds the form factors of at most {}; use fewer {}, "
+        "e.g. {}",
+        name, countText(mesh.unknowns()), countText(kMostPageUnknowns), spelled("patches"),
+        spelled("patches", "4000")));
   }
   if (mesh.size() > kMostPagePatches) {
     throw InputError(fmt::format(

@@ -22,6 +22,7 @@
 #include "pipeline/shared_journal.h"
 #include "pipeline/stage_key.h"
 #include "pipeline/stages/get_or_make.h"
+#include "radiosity/spelling.h"
 #include "radiosity/version.h"
 #include "results/matrix_blocks.h"
 #include "scene/text.h"
@@ -36,11 +37,11 @@ constexpr int kSceneBands = 3;
 /// The first option given that applies only to scene files; null if there is none.
 const char* readingOption(const SceneOptions& given) {
   const SceneOptions defaults;
-  if (!given.unit.empty()) return "--unit";
-  if (given.kd_is_srgb != defaults.kd_is_srgb) return "--kd-is";
-  if (given.default_reflectance != defaults.default_reflectance) return "--default-reflectance";
-  if (given.vertex_colours != defaults.vertex_colours) return "--vertex-colours";
-  if (given.textures != defaults.textures) return "--textures";
+  if (!given.unit.empty()) return "unit";
+  if (given.kd_is_srgb != defaults.kd_is_srgb) return "kd_is_srgb";
+  if (given.default_reflectance != defaults.default_reflectance) return "default_reflectance";
+  if (given.vertex_colours != defaults.vertex_colours) return "vertex_colours";
+  if (given.textures != defaults.textures) return "textures";
   return nullptr;
 }
 
@@ -98,7 +99,7 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
   if (const char* option = readingOption(scene)) {
     throw InputError(fmt::format(
         "{}: {} says how a scene file is read, and this is a results file; give the scene file",
-        path, option));
+        path, spelled(option)));
   }
   openSource(path);
   if (!stored_.scene) {
@@ -176,9 +177,9 @@ void Pipeline::requireLight(const std::function<std::string()>& cure) const {
   throw InputError(fmt::format(
       "{}: nothing in the scene emits light, so the picture would be black; {}", name_,
       cure ? cure()
-           : fmt::format("make something a lamp, --set {}.radiance=10 (W/m^2/sr), or let the sky "
-                         "shine in, --sky 1",
-                         likelyLamp(scene()))));
+           : fmt::format("make something a lamp, {} (W/m^2/sr), or let the sky shine in, {}",
+                         spelled("set", likelyLamp(scene()) + ".radiance=10"),
+                         spelled("sky", "1"))));
 }
 
 bool Pipeline::isUpToDate(const std::string& path) const {
@@ -194,9 +195,9 @@ std::shared_ptr<ScratchMemory> Pipeline::memoryOfStoredMatrix() const {
   const RowMemory memory = planRowMemory(beside + bytes, beside, bytes, options);
   if (options.memory_limit > 0 && memory.bytes > options.memory_limit) {
     throw RunError(fmt::format(
-        "{}: its form factors, {}, take {} of memory together with all else, --memory-limit allows "
-        "{}",
-        source_, bytesText(bytes), bytesText(memory.bytes), bytesText(options.memory_limit)));
+        "{}: its form factors, {}, take {} of memory together with all else, {} allows {}", source_,
+        bytesText(bytes), bytesText(memory.bytes), spelled("memory_limit"),
+        bytesText(options.memory_limit)));
   }
   return makeRowMemory(memory, options, n);
 }

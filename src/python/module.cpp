@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "handles.h"
-#include "keywords.h"
 #include "long_call.h"
 #include "options.h"
 
@@ -106,9 +105,9 @@ void bindErrors(py::module_& module) {
     try {
       if (thrown) std::rethrow_exception(std::move(thrown));
     } catch (const InputError& error) {
-      PyErr_SetObject(input_error, printable(withKeywords(error.what())).ptr());
+      PyErr_SetObject(input_error, printable(error.what()).ptr());
     } catch (const RunError& error) {
-      PyErr_SetObject(run_error, printable(withKeywords(error.what())).ptr());
+      PyErr_SetObject(run_error, printable(error.what()).ptr());
     }
   });
 }

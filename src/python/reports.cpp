@@ -2,7 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include "keywords.h"
 #include "radiosity/names.h"
 
 namespace py = pybind11;
@@ -47,10 +46,9 @@ py::dict fieldsOf(const auto& report) {
   return fields.dict;
 }
 
-/// The message names keywords, not options.
 py::dict summaryOf(const auto& summary) {
   py::dict dict = fieldsOf(summary);
-  dict["message"] = printable(withKeywords(summary.message));
+  dict["message"] = printable(summary.message);
   dict["usable"] = summary.usable();
   return dict;
 }
@@ -62,7 +60,7 @@ py::list listOf(const std::vector<Note>& notes) {
   for (const Note& note : notes) {
     py::dict entry;
     entry["severity"] = nameOf(kSeverityNames, note.severity);
-    entry["text"] = printable(withKeywords(note.text));
+    entry["text"] = printable(note.text);
     list.append(entry);
   }
   return list;

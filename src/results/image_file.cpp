@@ -77,7 +77,7 @@ void save(const std::string& path, const ImageToEncode& image) {
 
 DecodedImage readSamples(const std::string& path, double max_image) {
   try {
-    return imageCodec().read(path, max_image * 1e6);
+    return imageCodec().read(path, {max_image * 1e6});
   } catch (const std::bad_alloc&) {
     throw RunError(fmt::format("{}: the picture does not fit into memory; make it smaller", path));
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "radiosity/spelling.h"
 #include "results/glb.h"
 #include "results/gltf_bytes.h"
 #include "scene/gltf/glb_chunks.h"
@@ -182,9 +183,9 @@ bool LightmapGltf::isInScene(const Placed& placed, std::span<const Vec3> positio
 
 void LightmapGltf::failForOtherScene() const {
   file_.fail(
-      "has changed since the scene was read from it, or the scene has faces turned over or left "
-      "out "
-      "(--flip, --without); start again");
+      fmt::format("has changed since the scene was read from it, or the scene has faces turned "
+                  "over or left out ({}, {}); start again",
+                  spelled("flip"), spelled("without")));
 }
 
 /// Makes the copies of a node its children, with what belongs to a mesh.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/geometry/plane_frame.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -39,7 +40,7 @@ void FaceEdits::requireFaces() const {
   const bool any = std::ranges::any_of(scene_.face_surface,
                                        [this](Index surface) { return left_out_[surface] == 0; });
   if (any || scene_.faceCount() == 0) return;
-  throw InputError(fmt::format("--without {}: leaves no face; keep a surface", edits_.back().name));
+  throw InputError(spelled("without", edits_.back().name) + ": leaves no face; keep a surface");
 }
 
 std::vector<double> FaceEdits::areas() const {

@@ -13,6 +13,7 @@
 
 #include "base/file_name.h"
 #include "base/input_file.h"
+#include "radiosity/spelling.h"
 #include "scene/readers.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"
@@ -130,7 +131,7 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   noteTextures(scene);
   if (options.vertex_colours != VertexColours::unused && scene.colours.empty()) {
     scene.notes.push_back(
-        {Severity::warning, "--vertex-colours: no vertex has a colour that is read"});
+        {Severity::warning, spelled("vertex_colours") + ": no vertex has a colour that is read"});
   }
   applyOverrides(scene, options);
   requireMaterials(scene, options);

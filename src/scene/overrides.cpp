@@ -11,6 +11,7 @@
 
 #include "base/input_file.h"
 #include "base/parse.h"
+#include "radiosity/spelling.h"
 #include "scene/checks/checks.h"
 #include "scene/face_edits.h"
 #include "scene/json_scan.h"
@@ -22,7 +23,7 @@ namespace radiosity {
 
 namespace {
 
-/// The origin of an override and its text there: "--set lamp.emission=17".
+/// The origin of an override and its text there: "set='lamp.emission=17'".
 struct Origin {
   std::string text;
   [[noreturn]] void fail(const std::string& what) const {
@@ -288,7 +289,7 @@ void Overrides::readMaterialsFile(const std::string& path) {
 }
 
 void applySet(const std::string& text, Overrides& overrides) {
-  const Origin origin{"--set " + text};
+  const Origin origin{spelled("set", text)};
   // Names may contain dots and equals signs: the value begins after the last '=', the property
   // after the last '.' before it.
   const std::size_t equals = text.rfind('=');
@@ -329,16 +330,16 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
     if (!options.materials_file.empty()) overrides.readMaterialsFile(options.materials_file);
     for (const std::string& text : options.set) applySet(text, overrides);
     for (const std::string& name : options.one_sided) {
-      overrides.setSides(name, false, {"--one-sided " + name});
+      overrides.setSides(name, false, {spelled("one_sided", name)});
     }
     for (const std::string& name : options.two_sided) {
-      overrides.setSides(name, true, {"--two-sided " + name});
+      overrides.setSides(name, true, {spelled("two_sided", name)});
     }
     for (const std::string& name : options.flip) {
-      edits.flip(name, overrides.surfacesOf(name, {"--flip " + name}));
+      edits.flip(name, overrides.surfacesOf(name, {spelled("flip", name)}));
     }
     for (const std::string& name : options.without) {
-      edits.leaveOut(name, overrides.surfacesOf(name, {"--without " + name}));
+      edits.leaveOut(name, overrides.surfacesOf(name, {spelled("without", name)}));
     }
     edits.requireFaces();
     overrides.noteRounding();

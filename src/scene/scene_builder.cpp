@@ -7,6 +7,7 @@
 
 #include "base/finite.h"
 #include "base/srgb.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -209,6 +210,19 @@ void checkEmission(const std::string& where, const std::string& name, const Vec3
       fmt::format("{}: material {}: {}", where, name, emissionFault(emission, "W/m^2")));
 }
 
+std::string solidFeature() {
+  return fmt::format(
+      "transparency is not used: it is solid and blocks light ({} leaves it out), material",
+      spelled("without", "NAME"));
+}
+
+std::string maskFeature() {
+  return fmt::format(
+      "holes (alpha masks) are not cut out: it is solid and blocks light ({} leaves it out), "
+      "material",
+      spelled("without", "NAME"));
+}
+
 bool mayMend(const SceneOptions& options) {
   return !options.set.empty() || !options.materials_file.empty() || !options.without.empty();
 }
@@ -216,10 +230,12 @@ bool mayMend(const SceneOptions& options) {
 void requireMaterial(const std::string& where, const Material& material) {
   const bool reflects = isReflectance(material.reflectance);
   if (reflects && isEmission(material.emission)) return;
-  throw InputError(fmt::format("{}: material {}: {}, or --set '{}.{}'", where, material.name,
-                               reflects ? emissionFault(material.radiance(), "W/m^2/sr")
-                                        : reflectanceFault(material.reflectance),
-                               material.name, reflects ? "radiance=0" : "reflectance=0.8"));
+  throw InputError(fmt::format(
+      "{}: material {}: {}, or {}", where, material.name,
+      reflects ? emissionFault(material.radiance(), "W/m^2/sr")
+               : reflectanceFault(material.reflectance),
+      spelled("set",
+              fmt::format("'{}.{}'", material.name, reflects ? "radiance=0" : "reflectance=0.8"))));
 }
 
 void requireMaterials(Scene& scene, const SceneOptions& options) {

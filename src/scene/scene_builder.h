@@ -76,13 +76,9 @@ inline bool isTextured(const Material& material) {
 }
 
 /// The feature (FeatureNotes) of materials that light goes through, wholly or in part.
-inline constexpr const char* kSolidFeature =
-    "transparency is not used: it is solid and blocks light (--without NAME leaves it out), "
-    "material";
+std::string solidFeature();
 /// Of those with holes, which an image cuts out.
-inline constexpr const char* kMaskFeature =
-    "holes (alpha masks) are not cut out: it is solid and blocks light (--without NAME leaves it "
-    "out), material";
+std::string maskFeature();
 
 /// The name of the material of faces without one.
 inline constexpr const char* kNoMaterial = "default";

@@ -7,6 +7,7 @@
 
 #include "base/name_pattern.h"
 #include "base/near_names.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -22,16 +23,15 @@ struct Wish {
 Wish parse(const std::string& text) {
   const std::size_t equals = text.find('=');
   Wish wish;
-  wish.option = "--group " + text;
+  wish.option = spelled("groups", text);
   if (equals != std::string::npos) {
     wish.name = trimmed(std::string_view(text).substr(0, equals));
     wish.pattern = text.substr(equals + 1);
   }
   if (wish.name.empty() || wish.pattern.empty()) {
     throw InputError(
-        fmt::format("{}: is no NAME=PATTERN; e.g. --group walls='*wall*' joins surfaces with wall "
-                    "in their name",
-                    wish.option));
+        fmt::format("{}: is no NAME=PATTERN; e.g. {} joins surfaces with wall in their name",
+                    wish.option, spelled("groups", "walls='*wall*'")));
   }
   return wish;
 }
@@ -82,9 +82,9 @@ class Grouping {
       if (result_.of_surface[s] != kNone) continue;
       const auto named = result_.names.begin() + std::ptrdiff_t(groups);
       if (std::find(result_.names.begin(), named, surfaces_[s]) != named) {
-        throw InputError(fmt::format(
-            "--group {}=...: surface {} has that name and is not in the group; choose another name",
-            surfaces_[s], surfaces_[s]));
+        throw InputError(
+            fmt::format("{}: surface {} has that name and is not in the group; choose another name",
+                        spelled("groups", surfaces_[s] + "=..."), surfaces_[s]));
       }
       result_.of_surface[s] = Index(result_.names.size());
       result_.names.push_back(surfaces_[s]);

@@ -8,6 +8,7 @@
 
 #include "base/name_pattern.h"
 #include "base/near_names.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -69,10 +70,10 @@ std::vector<std::string> knownNames(const Scene& scene) {
 
 std::string flipOption(const std::vector<std::string>& names, std::size_t all) {
   constexpr std::size_t kFew = 6;
-  if (names.size() == all) return "--flip all";
+  if (names.size() == all) return spelled("flip", "all");
   std::string text;
   for (std::size_t k = 0; k < std::min(kFew, names.size()); ++k) {
-    text += fmt::format("{}--flip '{}'", k == 0 ? "" : " ", names[k]);
+    text += (k == 0 ? "" : " ") + spelled("flip", fmt::format("'{}'", names[k]));
   }
   return names.size() > kFew ? text + " and so on" : text;
 }

@@ -24,8 +24,8 @@ std::vector<Index> surfacesMeant(const Scene& scene, const std::string& name);
 /// Every name of a material, an object and a surface, each once.
 std::vector<std::string> knownNames(const Scene& scene);
 
-/// "--flip all" if the surfaces called `names` are `all` that there are, else "--flip 'NAME'" for
-/// each of the first few: the cure of faces that are turned the wrong way.
+/// The option flip for all if the surfaces called `names` are `all` that there are, else for each
+/// of the first few: the cure of faces that are turned the wrong way.
 std::string flipOption(const std::vector<std::string>& names, std::size_t all);
 
 /// "no surface, material or object is called NAME; there are: ...", the most similar first.

@@ -14,6 +14,7 @@
 #include "base/image_codec.h"
 #include "base/input_file.h"
 #include "base/srgb.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -108,7 +109,8 @@ void noteUnusedTexture(const std::string& file, const std::string& problem, Text
   const bool emits = use == TextureUse::emission;
   const Severity severity = emits ? Severity::loud : Severity::warning;
   const char* const texture = emits ? "emission texture" : "texture";
-  const std::string then = emits ? "it EMITS NOTHING (--set NAME.radiance gives it one all over)"
+  const std::string then = emits ? fmt::format("it EMITS NOTHING ({} gives it one all over)",
+                                               spelled("set", "NAME.radiance"))
                                  : fmt::format("the {} alone counts", what);
   if (problem != kImageMissing) {
     notes.add(fmt::format("{} {} {}; {}, material", texture, file, problem, then), material,
@@ -136,12 +138,12 @@ TextureResult readTexture(const std::string& path, double max_image) {
   if (!std::filesystem::exists(path, ignored)) return withProblem(kImageMissing);
   const std::string why = whyNotAFile(path);
   if (!why.empty()) return withProblem(why);
-  return decoded(path, [&] { return imageCodec().read(path, max_image * 1e6); });
+  return decoded(path, [&] { return imageCodec().read(path, {max_image * 1e6}); });
 }
 
 TextureResult decodeTexture(const std::string& name, std::span<const unsigned char> bytes,
                             double max_image) {
-  return decoded(name, [&] { return imageCodec().decode(name, bytes, max_image * 1e6); });
+  return decoded(name, [&] { return imageCodec().decode(name, bytes, {max_image * 1e6}); });
 }
 
 }  // namespace radiosity

@@ -12,7 +12,7 @@ double mostImbalance(const FormFactors& factors) {
   return std::max(traitsOf(factors.method).imbalance, factors.report.error_figure);
 }
 
-std::string imbalanceCure(FormFactorMethod method) { return std::string(traitsOf(method).cure); }
+std::string imbalanceCure(FormFactorMethod method) { return traitsOf(method).cure(); }
 
 void judgeBalance(const FormFactors& factors, std::span<const double> emission,
                   SolveSummary& summary) {

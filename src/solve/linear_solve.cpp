@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "radiosity/spelling.h"
 #include "solve/certificate.h"
 
 namespace radiosity {
@@ -136,10 +137,10 @@ Fields solveSystem(const System& system, const SolveOptions& options, Progress& 
 
 void requireSolver(Solver solver, const ExchangeMatrix& matrix) {
   if (solver == Solver::cg && !matrix.isSymmetric()) {
-    throw InputError(
+    throw InputError(fmt::format(
         "solver cg: conjugate gradients need a symmetric matrix, and rows of hemicubes are not "
-        "(A_i "
-        "F_ij = A_j F_ji does not hold); use gmres or auto, or merge the rows (--symmetrize)");
+        "(A_i F_ij = A_j F_ji does not hold); use gmres or auto, or merge the rows ({})",
+        spelled("symmetrize")));
   }
   const bool shared = matrix.sharedRows() != nullptr;
   if (solver == Solver::petsc && !shared) {

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/lower_case.h"
+#include "radiosity/spelling.h"
 #include "results/checked_file.h"
 #include "tables/table_rows.h"
 
@@ -23,8 +24,8 @@ void requireName(const std::string& path, const std::string& name) {
   if (plain && !name.empty() && name.size() <= kLongestIdfName) return;
   throw InputError(fmt::format(
       "{}: '{}' is no name for EnergyPlus: 1 to {} characters without comma, semicolon and "
-      "exclamation mark; rename it (--group NEW=OLD)",
-      path, name, kLongestIdfName));
+      "exclamation mark; rename it ({})",
+      path, name, kLongestIdfName, spelled("groups", "NEW=OLD")));
 }
 
 /// The largest factor that EnergyPlus takes (IDD: \maximum 1.0), but for the digits not written.
@@ -35,16 +36,16 @@ void requireFactor(const std::string& path, const NamedFactors& factors, std::si
   if (value < kMostFactor) return;
   throw InputError(
       fmt::format("{}: F from {} to {} is {}, and EnergyPlus takes 1 at most; ask for a smaller "
-                  "--tolerance, or "
-                  "for --closure enforce",
-                  path, factors.names[a], factors.names[b], value));
+                  "{}, or for {}",
+                  path, factors.names[a], factors.names[b], value, spelled("tolerance"),
+                  spelled("closure", "enforce")));
 }
 
 /// EnergyPlus compares names without regard to case.
 void requireNames(const std::string& path, const NamedFactors& factors) {
   if (factors.numbered) {
-    throw InputError(path +
-                     ": EnergyPlus has view factors between surfaces; leave out --between patches");
+    throw InputError(path + ": EnergyPlus has view factors between surfaces; leave out " +
+                     spelled("between", "patches"));
   }
   std::map<std::string, std::string> seen;
   for (const std::string& name : factors.names) {
@@ -52,9 +53,8 @@ void requireNames(const std::string& path, const NamedFactors& factors) {
     const auto [other, added] = seen.emplace(lowerCase(name), name);
     if (added) continue;
     throw InputError(fmt::format(
-        "{}: {} and {} are one name for EnergyPlus, which ignores case; rename one (--group "
-        "NEW=OLD)",
-        path, other->second, name));
+        "{}: {} and {} are one name for EnergyPlus, which ignores case; rename one ({})", path,
+        other->second, name, spelled("groups", "NEW=OLD")));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/made.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/results.h"
+#include "radiosity/spelling.h"
 #include "results/matrix_market.h"
 #include "scene/text.h"
 #include "tables/matrix_readers.h"
@@ -119,7 +120,8 @@ MatrixFile readMatrixFile(const std::string& path, Progress& progress,
   MatrixFile file;
   if (isResultsFile(path)) {
     if (!areas.empty()) {
-      throw InputError(path + ": a results file has areas of its own; leave --areas out");
+      throw InputError(fmt::format("{}: a results file has areas of its own; leave {} out", path,
+                                   spelled("areas")));
     }
     return readOfResults(path);
   }

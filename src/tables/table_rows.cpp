@@ -4,21 +4,22 @@
 
 #include <set>
 
+#include "radiosity/spelling.h"
+
 namespace radiosity {
 
 void requireDistinctNames(const std::string& path, const NamedFactors& factors) {
   std::set<std::string> names;
   if (!factors.numbered) names.insert(factors.names.begin(), factors.names.end());
   if (names.contains(factors.sky_name) || factors.sky_name == "backs") {
-    throw InputError(fmt::format(
-        "{}: the sky is called {}, as another receiver is; give it another name (--sky-name)", path,
-        factors.sky_name));
+    throw InputError(
+        fmt::format("{}: the sky is called {}, as another receiver is; give it another name ({})",
+                    path, factors.sky_name, spelled("sky_name")));
   }
   if (names.contains("backs")) {
     throw InputError(fmt::format(
-        "{}: a surface is called backs, as the column of black backs is; rename it (--group "
-        "NAME=backs)",
-        path));
+        "{}: a surface is called backs, as the column of black backs is; rename it ({})", path,
+        spelled("groups", "NAME=backs")));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <iterator>
 
+#include "radiosity/spelling.h"
 #include "radiosity/version.h"
 #include "results/checked_file.h"
 #include "tables/table_rows.h"
@@ -19,8 +20,8 @@ void requireAreas(const std::string& path, const NamedFactors& factors) {
   for (std::size_t a = 0; a < factors.size(); ++a) {
     if (factors.matrix->area()[a] > 0) continue;
     throw InputError(fmt::format(
-        "{}: {} {} has no area, by which View3D's readers divide; join it with another (--group)",
-        path, factors.numbered ? "patch" : "surface", labelOf(factors, a)));
+        "{}: {} {} has no area, by which View3D's readers divide; join it with another ({})", path,
+        factors.numbered ? "patch" : "surface", labelOf(factors, a), spelled("groups")));
   }
 }
 

@@ -1,4 +1,5 @@
-"""A file of a room compiles with headers of the rooms that it knows, and with no others."""
+"""A file of a room compiles with headers of the rooms that it knows, and with no others; only the
+command line knows how it spells options."""
 import json
 import os
 import pathlib
@@ -71,6 +72,17 @@ class Rooms(unittest.TestCase):
                     self.assertTrue((ROOT / "src" / header).exists()
                                     or (ROOT / "include" / header).exists(), header)
                     self.assertFalse(self.compiles(room, header), header)
+
+    def test_messages_leave_the_spelling_of_options_to_faces(self):
+        # Not options of ours, or a whole command.
+        others = re.compile("<!--radiosity-data-->|gunzip --keep|radiosity info --devices")
+        for file in sorted([*ROOT.glob("include/**/*.h"), *ROOT.glob("src/**/*.h"),
+                            *ROOT.glob("src/**/*.cpp")]):
+            if ROOT / "src/cli" in file.parents:
+                continue
+            code = re.sub("//.*", "", file.read_text())
+            for text in re.findall(r'"(?:[^"\\\n]|\\.)*"', code):
+                self.assertNotRegex(others.sub("", text), "--[a-z]", f"{file}: call spelled()")
 
 
 if __name__ == "__main__":

@@ -216,7 +216,7 @@ TEST(CompareFields, AnErrorOfPiIsFoundAndNamed) {
   const Comparison c = compare(radiance, radiosity, {});
   ASSERT_EQ(c.notes.size(), 1u);
   EXPECT_NE(c.notes[0].text.find("that is pi:"), std::string::npos) << c.notes[0].text;
-  EXPECT_NE(c.notes[0].text.find("--b-is radiance"), std::string::npos);
+  EXPECT_NE(c.notes[0].text.find("b_is='radiance'"), std::string::npos);
   EXPECT_NEAR(c.fitted_scale, std::numbers::pi, 1e-12);
   EXPECT_LT(c.fitted_l2, 1e-12);
   EXPECT_NEAR(c.relativeL2(), 1 - std::numbers::inv_pi, 1e-12);
@@ -258,7 +258,7 @@ TEST(CompareFields, CodedColoursNeedAFactorAndDropClippedValues) {
   const LightField a = light(square(64, truth));
   const std::string error = refusal(a, b);
   EXPECT_NE(error.find("screen.ply"), std::string::npos) << error;
-  EXPECT_NE(error.find("--fit-scale"), std::string::npos) << error;
+  EXPECT_NE(error.find("add fit_scale"), std::string::npos) << error;
   CompareOptions options;
   options.fit_scale = true;
   const Comparison c = compare(a, b, options);
@@ -294,7 +294,7 @@ TEST(CompareFields, PartsAreComparedOnRequest) {
   const LightField part = light(half);
   const std::string error = refusal(whole, part);
   EXPECT_NE(error.find("50.00% of A's area and 100.00% of B's"), std::string::npos) << error;
-  EXPECT_NE(error.find("--partial"), std::string::npos);
+  EXPECT_NE(error.find("with partial"), std::string::npos);
   CompareOptions options;
   options.partial = true;
   const Comparison c = compare(whole, part, options);

@@ -274,7 +274,7 @@ TEST(ClosedRows, ExactRowsThatSumToMoreThanOneSayIt) {
       }
       bool noted = false;
       for (const Note& note : f.report.notes) {
-        noted = noted || note.text.find("--weld") != std::string::npos;
+        noted = noted || note.text.find("larger weld") != std::string::npos;
       }
       if (largest > 1e-3) {
         EXPECT_TRUE(noted) << seed;

@@ -286,7 +286,7 @@ TEST(AimedRays, ARowThatHasSeenNothingSaysUpToWhichFormFactor) {
   });
   ASSERT_NE(note, f.report.notes.end());
   EXPECT_EQ(note->severity, Severity::warning);
-  EXPECT_NE(note->text.find("--method exact"), std::string::npos) << note->text;
+  EXPECT_NE(note->text.find("method='exact'"), std::string::npos) << note->text;
 }
 
 }  // namespace

@@ -370,9 +370,9 @@ TEST(HeatConditionsByName, WrongConditionsAreNamed) {
   says({"*.emissivity=.5", "*.flux=0", "shell.power=60", "walls.emissivity=.1"},
        "power and isothermal are of all that the name stands for");
   says({"*.emissivity=.5", "*.flux=0", "lid.temperature=300", "lid.flux=5"},
-       "--condition lid.flux=5: lid is heated here and by --condition lid.temperature=300");
+       "conditions='lid.flux=5': lid is heated here and by conditions='lid.temperature=300'");
   says({"*.emissivity=.5", "*.flux=0", "*l*.temperature=300", "*d.temperature=400"},
-       "lid is heated here and by --condition *l*.temperature=300");
+       "lid is heated here and by conditions='*l*.temperature=300'");
   says({"*.emissivity=.5", "*.flux=0", "lid.convection=5"}, "lid: has convection and no ambient");
   says({}, "no conditions are given");
 }

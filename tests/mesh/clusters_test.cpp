@@ -225,7 +225,7 @@ TEST(ClustersOfAMesh, NumberAtLeastOneASurface) {
   EXPECT_EQ(mesh.unknowns(), 40u);
   EXPECT_TRUE(std::ranges::any_of(report.notes, [](const Note& note) {
     return note.severity == Severity::warning &&
-           note.text.find("--patches 10 cannot be kept: the scene has 40 surfaces") == 0;
+           note.text.find("patches=10 cannot be kept: the scene has 40 surfaces") == 0;
   }));
 }
 

@@ -259,7 +259,7 @@ TEST(AnyGeometry, ASurfaceThatWouldVanishIsRefused) {
     FAIL() << "meshed";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("thread"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("--weld"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("smaller weld"), std::string::npos) << error.what();
   }
   EXPECT_NEAR(meshed(b.scene(), 300, 1e-12).report.surfaces[1].kept, 2e-8, 1e-14);
 }

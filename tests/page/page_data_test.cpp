@@ -500,7 +500,7 @@ TEST(PageData, TooManyUnknownsOrPatchesAreRefusedWithTheCure) {
   mesh.area.resize(kMostPageUnknowns + 1);
   EXPECT_EQ(test::errorOf([&] { requirePageFits("s.obj", mesh); }),
             "s.obj: 8,001 unknowns, and a page holds the form factors of at most 8,000; use fewer "
-            "--patches, e.g. --patches 4000");
+            "patches, e.g. patches=4000");
   mesh.area.resize(kMostPagePatches + 1);
   mesh.clusters.emplace();
   mesh.clusters->begin.resize(10);
@@ -518,7 +518,7 @@ void useHemicubes(PipelineOptions& options) {
 
 TEST(PageData, UnmergedHemicubesAreRefused) {
   const std::string why = test::errorOf([] { Made(roomWithPlate(), 60, false, useHemicubes); });
-  EXPECT_NE(why.find("--symmetrize"), std::string::npos) << why;
+  EXPECT_NE(why.find("with symmetrize"), std::string::npos) << why;
 }
 
 TEST(PageData, HemicubesHaveNoErrorFigures) {

@@ -552,7 +552,7 @@ TEST_F(PipelineStages, KeysKeepTheirText) {
 TEST_F(PipelineStages, ADarkSceneIsRefused) {
   Pipeline pipeline(progress_);
   pipeline.open(furnace(0.5, 0));
-  expectError<InputError>("test scene", "--set wall/wall.radiance=10",
+  expectError<InputError>("test scene", "set='wall/wall.radiance=10'",
                           [&] { pipeline.requireLight(); });
   expectError<InputError>("test scene", "nothing in the scene emits light",
                           [&] { pipeline.requireLight([] { return "light a candle"; }); });
@@ -566,9 +566,9 @@ TEST_F(PipelineStages, SceneOptionsAreRefusedForResultsFiles) {
   SceneOptions bare;
   bare.textures = false;
   Pipeline pipeline(progress_);
-  expectError<InputError>(file, "--unit says how a scene file is read",
+  expectError<InputError>(file, "unit says how a scene file is read",
                           [&] { pipeline.open(file, inches); });
-  expectError<InputError>(file, "--textures", [&] { pipeline.open(file, bare); });
+  expectError<InputError>(file, "textures says", [&] { pipeline.open(file, bare); });
   const std::string absent = path("absent.obj");
   expectError<InputError>(absent, "no such file", [&] { pipeline.open(absent); });
 }
@@ -602,7 +602,7 @@ TEST_F(PipelineStages, AMatrixOfAnotherRunIsNotTaken) {
   Pipeline small(progress_);
   small.open(file);
   small.options().factors.memory_limit = 100;
-  expectError<RunError>(file, "--memory-limit allows 100 B", [&] { small.matrix(); });
+  expectError<RunError>(file, "memory_limit allows 100 B", [&] { small.matrix(); });
 }
 
 TEST_F(PipelineStages, OptionsOutOfRangeAreNamed) {

@@ -140,7 +140,7 @@ class Checker {
   bool isAmbiguous(const FormFactors& truth) const {
     if (model_.known.at_weld_distance) return true;
     return std::any_of(truth.report.notes.begin(), truth.report.notes.end(), [](const Note& note) {
-      return note.text.find("--weld") != std::string::npos;
+      return note.text.find("weld") != std::string::npos;
     });
   }
 
@@ -151,7 +151,7 @@ class Checker {
       if (!(std::abs(left) <= 1e-9 * s.given)) {
         fault("area lost", "{}: {} of {} m^2 on no account", s.name, left, s.given);
       }
-      if (s.degenerate > 0.5 * s.given && !isNoted(s.name) && !isNoted("--weld")) {
+      if (s.degenerate > 0.5 * s.given && !isNoted(s.name) && !isNoted("weld")) {
         fault("surface dropped", "{}: {} of {} m^2 thinner than coincidence, not noted", s.name,
               s.degenerate, s.given);
       }
@@ -291,7 +291,7 @@ class Checker {
 
   /// Sums over surfaces against what the making of the scene tells.
   void checkKnown(const std::string& by, const FormFactors& f) {
-    if (model_.known.at_weld_distance && (isNoted("--weld") || isNoted("coincide"))) return;
+    if (model_.known.at_weld_distance && (isNoted("weld") || isNoted("coincide"))) return;
     const std::span<const double> area = f.matrix.area();
     if (model_.known.sky_area) {
       double sky = 0;
@@ -323,7 +323,7 @@ class Checker {
       });
     }
     if (from_area == 0) {
-      if (!isNoted("--weld")) fault("surface gone " + by, "{} has no patch", known.from);
+      if (!isNoted("weld")) fault("surface gone " + by, "{} has no patch", known.from);
       return;
     }
     const double value = exchange / from_area;
@@ -372,7 +372,7 @@ class Checker {
   /// A room turned inside out sees nothing of itself, and somebody says so.
   void checkInsideOut(const FormFactors& truth) {
     const std::vector<Note>& notes = truth.report.notes;
-    const bool noted = isNoted("outward", notes) || isNoted("--flip", notes);
+    const bool noted = isNoted("outward", notes) || isNoted("flip", notes);
     if (truth.matrix.nonZeros() == 0 && !noted) {
       fault("inside out", "nothing sees anything, and no note says why");
     }
@@ -398,7 +398,7 @@ Findings check(const Model& model, const std::string& path) {
   } catch (const InputError& error) {
     // A surface that is lost whole is refused with the cure. Nothing else here is bad input.
     findings.refused = 1;
-    if (std::string(error.what()).find("--weld") == std::string::npos) {
+    if (std::string(error.what()).find("weld") == std::string::npos) {
       findings.faults.push_back({"refused", error.what()});
     }
   } catch (const std::exception& error) {

@@ -128,7 +128,7 @@ def test_wrong_arrays_are_refused_in_one_line(call, message):
     (lambda F: rad.form_factors(F.mesh, method="guess"), "'guess' is not one of auto, exact"),
     (lambda F: rad.form_factors(F), "mesh: is of type FormFactors"),
     (lambda F: F.between("lamp", "none"), "none: no surface, material or object.*lamp/light"),
-    (lambda F: F.table(groups=["a=nothing*"]), "groups: a=nothing.*matches no surface"),
+    (lambda F: F.table(groups=["a=nothing*"]), "groups='a=nothing.*matches no surface"),
     (lambda F: rad.solve(F, emission=np.ones(3)), r"emission: has shape \(3,\); give .*N = "),
     (lambda F: rad.solve(F, emission=np.ones(len(F.mesh))), "reflectance: the scene's has 3 bands"),
     (lambda F: rad.solve(F, 1.5), "reflectance"),

@@ -112,13 +112,13 @@ def test_a_room_that_faces_outward_is_said_and_turned(tmp_path):
         turned = rad.load(path, flip="all")
         without = rad.load(path, without=["ceil*"])
     with pytest.warns(UserWarning, match="the closed shell floor, ceiling, wall faces "
-                                         "outward, .* turn it over, flip: all$"):
+                                         "outward, .* turn it over, flip='all'$"):
         assert rad.form_factors(rad.mesh(scene, patches=6)).csr.nnz == 0
     assert any(note["text"].startswith("all (") and "turned over" in note["text"] for note in turned.notes)
     factors = rad.form_factors(rad.mesh(turned, patches=6), tolerance=1e-6)
     assert factors.csr[0, 1] == pytest.approx(.199825, abs=2e-6)  # opposite faces of a cube
     assert without.surface_names == ["floor", "wall"]
-    with pytest.raises(rad.InputError, match="^without: flor: no surface, material or object is called flor"):
+    with pytest.raises(rad.InputError, match="^without='flor': no surface, material or object is called flor"):
         rad.load(path, without="flor")
 
 
@@ -168,8 +168,8 @@ def test_results_overwrite_no_other_file(plates, tmp_path, name):
     (lambda: rad.from_csr([[0, 1], [1, 0]], [1, 1], sky=[0, np.inf]), "^sky: entry 1 is inf"),
     (lambda: rad.from_csr([[0, 1], [1, 0]], [1, 1], names="ab"), "^names: are 1; give 2"),
     (lambda: rad.solve(rad.from_csr([[0]], [1]), np.nan, [1]), "^reflectance: is nan; give a finite number"),
-    (lambda: rad.load(CORNELL, set="lamp.glow=3"), "^set: lamp.glow=3: "),
-    (lambda: rad.load(CORNELL, two_sided="none"), "^two_sided: none"),
+    (lambda: rad.load(CORNELL, set="lamp.glow=3"), "^set='lamp.glow=3': "),
+    (lambda: rad.load(CORNELL, two_sided="none"), "^two_sided='none'"),
 ])
 def test_values_out_of_range_are_named(call, message):
     refused(call, message)

@@ -82,7 +82,7 @@ TEST_F(SceneColours, AreNotUsedUnlessAskedFor) {
       load("a.ply", ply("uchar", {"255 0 0", "0 0 0", "0 0 0"}), VertexColours::unused);
   EXPECT_TRUE(plain.colours.empty());
   EXPECT_EQ(plain.materials[0].reflectance, Vec3(0.5));
-  EXPECT_NOTE(plain.notes, "--vertex-colours srgb or linear does", Severity::info);
+  EXPECT_NOTE(plain.notes, "vertex_colours='srgb' or linear does", Severity::info);
 }
 
 constexpr const char* kObj =
@@ -102,7 +102,7 @@ TEST_F(SceneColours, OfAnObjMultiplyTheMaterial) {
   EXPECT_EQ(scene.materialOf(1).reflectance, Vec3(0.4));
   const Scene plain = load("a.obj", kObj, VertexColours::unused);
   EXPECT_TRUE(plain.colours.empty());
-  EXPECT_NOTE(plain.notes, "(--vertex-colours srgb or linear does), in: bare", Severity::info);
+  EXPECT_NOTE(plain.notes, "(vertex_colours='srgb' or linear does), in: bare", Severity::info);
 }
 
 TEST_F(SceneColours, OfOtherFormatsMultiplyTheMaterial) {
@@ -137,7 +137,7 @@ TEST_F(SceneColours, OutsideTheRangeAreRefused) {
 
 TEST_F(SceneColours, MissingOnesAreNoted) {
   const Scene scene = load("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", VertexColours::srgb);
-  EXPECT_NOTE(scene.notes, "--vertex-colours: no vertex has a colour", Severity::warning);
+  EXPECT_NOTE(scene.notes, "vertex_colours: no vertex has a colour", Severity::warning);
   EXPECT_EQ(scene.materials[0].reflectance, Vec3(0.5));
 }
 

@@ -69,13 +69,13 @@ TEST_F(SceneGltf, ReadsMaterials) {
   EXPECT_NOTE(scene.notes, "metalness is not used (glTF's default is 1), material: lamp#2",
               Severity::info);
   EXPECT_NOTE(scene.notes,
-              "transparency is not used: it is solid and blocks light (--without NAME leaves it "
+              "transparency is not used: it is solid and blocks light (without='NAME' leaves it "
               "out), material: lamp#2",
               Severity::warning);
   const Note* const white = findNote(scene.notes, "reflectance 1: absorbs no light");
   ASSERT_NE(white, nullptr);
   EXPECT_EQ(white->severity, Severity::warning);
-  EXPECT_TRUE(white->text.ends_with("--set NAME.reflectance): lamp#2")) << white->text;
+  EXPECT_TRUE(white->text.ends_with("set='NAME.reflectance'): lamp#2")) << white->text;
 }
 
 TEST_F(SceneGltf, NamesWhatIsNotUsed) {
@@ -95,7 +95,7 @@ TEST_F(SceneGltf, NamesWhatIsNotUsed) {
   EXPECT_NOTE(scene.notes, "normal maps are not used, material: stone", Severity::info);
   EXPECT_NOTE(scene.notes, "occlusion maps are not used, material: stone", Severity::info);
   EXPECT_NOTE(scene.notes, "roughness is not used, all is matt, material: stone", Severity::info);
-  EXPECT_NOTE(scene.notes, "(--without NAME leaves it out), material: pane", Severity::warning);
+  EXPECT_NOTE(scene.notes, "(without='NAME' leaves it out), material: pane", Severity::warning);
   EXPECT_NOTE(scene.notes, "holes (alpha masks) are not cut out: it is solid", Severity::warning);
 }
 

@@ -192,7 +192,7 @@ TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
     }
     const std::string text =
         "cube/cube: closed, faces outwards and is all there is: nothing inside sees anything; if "
-        "it is a room, turn it over, --flip all";
+        "it is a room, turn it over, flip='all'";
     EXPECT_NOTE(inspectScene(scene).problems, text, Severity::warning);
     Scene lit = scene;
     lit.sky = Vec3(1);

@@ -356,7 +356,7 @@ TEST_F(SceneObj, NamesMaterialPropertiesThatAreNotDiffuse) {
   EXPECT_NOTE(
       scene.notes,
       fmt::format(
-          "it EMITS NOTHING (--set NAME.radiance gives it one all over), material: steel ({})",
+          "it EMITS NOTHING (set='NAME.radiance' gives it one all over), material: steel ({})",
           path("e.png")),
       Severity::loud);
   EXPECT_NOTE(scene.notes, "unknown MTL statement `blurb`", Severity::warning);

@@ -159,7 +159,7 @@ TEST_F(SceneOverride, SetsOneSidedBeforeTwoSided) {
   EXPECT_TRUE(scene.materialOf(2).two_sided);
   EXPECT_NOTE(scene.notes, "shelf: two-sided", Severity::info);
   options.two_sided = {"nobody"};
-  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file_, options); }), "--two-sided nobody");
+  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file_, options); }), "two_sided='nobody'");
 }
 
 TEST_F(SceneOverride, TakesPatternsAndAll) {
@@ -209,7 +209,7 @@ TEST_F(SceneOverride, TurnsFacesOver) {
   for (const std::size_t k : {0, 1, 2}) EXPECT_EQ(corner(after, 1, k), corner(before, 1, k));
   EXPECT_NOTE(after.notes, "a (a/paint): 1 face, 1.5 m^2, turned over", Severity::info);
   options.flip = {"nobody"};
-  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file, options); }), "--flip nobody: no surface");
+  EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file, options); }), "flip='nobody': no surface");
 }
 
 TEST_F(SceneOverride, LeavesSurfacesOut) {
@@ -227,7 +227,7 @@ TEST_F(SceneOverride, LeavesSurfacesOut) {
               Severity::info);
   options.without = {"all"};
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(file_, options); }),
-                  "--without all: leaves no face");
+                  "without='all': leaves no face");
   // Errors leave a scene in memory as it was.
   scene = loadScene(file_);
   options = {};
@@ -249,7 +249,7 @@ TEST_F(SceneOverride, MendsWhatIsNoReflectance) {
   for (const std::string kd : {"1.2 0 0", "1.0000011 1 1", "-1e-9 0 0", "nan 0 0", "inf 0 0"}) {
     const std::string error = inputErrorOf([&] { load(kd); });
     EXPECT_CONTAINS(error, "m.mtl:2: material white: reflectance ");
-    EXPECT_CONTAINS(error, "--set 'white.reflectance=0.8'");
+    EXPECT_CONTAINS(error, "set='white.reflectance=0.8'");
     EXPECT_EQ(load(kd, mended).materialOf(0).reflectance, Vec3(.7)) << kd;
     EXPECT_EQ(load(kd, without).faceCount(), 1u) << kd;
   }

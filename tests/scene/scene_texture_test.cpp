@@ -236,7 +236,7 @@ TEST_F(SceneTexture, ATintKeepsTheTexture) {
               Severity::info);
   options.set = {"paint.tint=2"};
   EXPECT_CONTAINS(inputErrorOf([&] { load("Kd .8 .8 .8\nmap_Kd grey.png\n", options); }),
-                  "--set paint.tint=2: material paint: reflectance 1.6 is outside 0 to 1");
+                  "set='paint.tint=2': material paint: reflectance 1.6 is outside 0 to 1");
 }
 
 TEST_F(SceneTexture, AFactorOfZeroBesideATextureMeansTheTexture) {
@@ -281,7 +281,7 @@ TEST_F(SceneTexture, AnEmissiveTextureMultipliesKe) {
     scene = load(ke + "map_Ke lost.png\n");
     EXPECT_EQ(scene.materialOf(0).emission, Vec3(0));
     EXPECT_NOTE(scene.notes,
-                "emission textures that are not there; it EMITS NOTHING (--set NAME.radiance gives "
+                "emission textures that are not there; it EMITS NOTHING (set='NAME.radiance' gives "
                 "it one all over), material: paint",
                 Severity::loud);
   }

@@ -190,7 +190,7 @@ TEST_F(Tables, SurfacesJoinTheFirstGroupThatMatches) {
   EXPECT_EQ(groups.names, (std::vector<std::string>{"light", "room", "all"}));
   EXPECT_EQ(groups.of_surface, (std::vector<Index>{1, 1, 0, 2}));
   ASSERT_EQ(groups.notes.size(), 3u);
-  EXPECT_EQ(groups.notes[2].text, "--group all=*: surface lamp is in group light already");
+  EXPECT_EQ(groups.notes[2].text, "groups='all=*': surface lamp is in group light already");
   // An exact name counts, whatever it would match as a pattern.
   EXPECT_EQ(groupSurfaces(surfaces, std::vector<std::string>{"one=a[1]"}).of_surface,
             (std::vector<Index>{1, 2, 3, 0}));
@@ -208,10 +208,10 @@ TEST_F(Tables, RefusesInvalidGroups) {
   const auto error = [&](std::vector<std::string> groups) {
     return errorOf([&] { groupSurfaces(surfaces, groups); });
   };
-  EXPECT_EQ(error({"g=up*"}), "--group g=up*: matches no surface; there are: left, right");
-  EXPECT_NE(error({"g"}).find("--group g: is no NAME=PATTERN"), std::string::npos);
+  EXPECT_EQ(error({"g=up*"}), "groups='g=up*': matches no surface; there are: left, right");
+  EXPECT_NE(error({"g"}).find("groups='g': is no NAME=PATTERN"), std::string::npos);
   EXPECT_NE(error({"=*"}).find("is no NAME=PATTERN"), std::string::npos);
-  EXPECT_NE(error({"g=*", "h=left"}).find("--group h=left: all surfaces"), std::string::npos);
+  EXPECT_NE(error({"g=*", "h=left"}).find("groups='h=left': all surfaces"), std::string::npos);
   EXPECT_NE(error({"left=right"}).find("surface left has that name"), std::string::npos);
 }
 

@@ -128,8 +128,9 @@ void noteUnknown(const std::vector<RowAccuracy>& rows, double usual, double tole
       {Severity::warning,
        fmt::format(
            "{} of {} rows have seen next to nothing when rays stopped at {:.2g} million: what they "
-           "see of others, up to {:.2g} of their view, is unknown; --method exact finds it",
-           countText(unknown), countText(rows.size()), 1e-6 * double(report.rays.rays), most)});
+           "see of others, up to {:.2g} of their view, is unknown; {} finds it",
+           countText(unknown), countText(rows.size()), 1e-6 * double(report.rays.rays), most,
+           spelled("method", "exact"))});
 }
 
 /// Stores the matrix, its error figures and the error of each entry.
@@ -248,10 +249,10 @@ void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
   const double tolerance = options.toleranceOf(FormFactorMethod::rays);
   report.notes.push_back(
       {Severity::info,
-       fmt::format("rays stopped at {} million, where rows are to {:.2g}; --tolerance {} asks for "
+       fmt::format("rays stopped at {} million, where rows are to {:.2g}; {} asks for "
                    "as many as that takes",
                    std::llround(1e-6 * double(report.rays.rays)), *report.rays.loosened_tolerance,
-                   tolerance)});
+                   spelled("tolerance", fmt::format("{}", tolerance)))});
 }
 
 /// Deals the rows out to all processes.

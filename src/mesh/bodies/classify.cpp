@@ -12,6 +12,7 @@
 
 #include "mesh/bodies/bodies.h"
 #include "mesh/bodies/hollows.h"
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -192,7 +193,8 @@ void Classifier::noteLoneRoom() {
   report_.notes.push_back(
       {scene_.sky == Vec3(0.0) ? Severity::info : Severity::warning,
        fmt::format("closed, two-sided and alone, so it is a room, and its outside has no patches "
-                   "(--one-sided all makes a body of it, if its faces are turned outward): {}",
+                   "({} makes a body of it, if its faces are turned outward): {}",
+                   spelled("one_sided", "all"),
                    joinNames(std::vector<std::string>(names.begin(), names.end())))});
 }
 

@@ -15,6 +15,7 @@
 #include "mesh/clusters/agglomerate.h"
 #include "mesh/clusters/canonical_order.h"
 #include "mesh/clusters/nearest_tree.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 
@@ -239,9 +240,9 @@ void shareUnknowns(PatchMesh& mesh, const MeshOptions& options, MeshReport& repo
   if (double(shared) > most) {
     report.notes.push_back(
         {Severity::warning,
-         fmt::format("--patches {} cannot be kept: the scene has {} surfaces, each at least one "
+         fmt::format("{} cannot be kept: the scene has {} surfaces, each at least one "
                      "unknown; join surfaces in the file, or ask for {} or more",
-                     options.patches, shared, shared)});
+                     spelled("patches", fmt::format("{}", options.patches)), shared, shared)});
   }
   if (clusters.size() == mesh.size()) return;
   mesh.clusters = std::move(clusters);

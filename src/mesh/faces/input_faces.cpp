@@ -19,6 +19,7 @@
 #include "mesh/edge_key.h"
 #include "mesh/plane_image.h"
 #include "mesh/triangulate.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 
@@ -327,8 +328,8 @@ void Cleaner::refuseVanished() const {
     if (left[s] || !(areas.given > kRounding * out_.diagonal * out_.diagonal)) continue;
     throw InputError(fmt::format(
         "{}: {}: all of it ({:.3g} m^2) is thinner than the coincidence of {:.3g} m and would "
-        "vanish; take a smaller --weld (below {:.1g}), or leave it out",
-        scene_.file, areas.name, areas.given, out_.coincidence,
+        "vanish; take a smaller {} (below {:.1g}), or leave it out",
+        scene_.file, areas.name, areas.given, out_.coincidence, spelled("weld"),
         areas.given / (out_.diagonal * out_.diagonal)));
   }
 }

@@ -11,6 +11,7 @@
 #include "mesh/plane_image.h"
 #include "mesh/polygons/merge_cells.h"
 #include "mesh/triangulate.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 
@@ -86,8 +87,8 @@ void noteHandling(const InputFaces& input, MeshReport& report) {
         {Severity::warning,
          fmt::format("{}: {} faces ({:.6g} m^2) were taken as they are, not cut where others touch "
                      "them: details there are about as small as the coincidence of {:.3g} m; try a "
-                     "smaller or a larger --weld",
-                     name, sum.faces, sum.area, input.coincidence)});
+                     "smaller or a larger {}",
+                     name, sum.faces, sum.area, input.coincidence, spelled("weld"))});
   }
 }
 

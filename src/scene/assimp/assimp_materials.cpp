@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/srgb.h"
+#include "radiosity/spelling.h"
 #include "scene/image_path.h"
 #include "scene/text.h"
 #include "scene/texture.h"
@@ -78,9 +79,9 @@ Material AssimpMaterialReader::convert(const AssimpFileMaterial& given, unsigned
   material.emission = std::numbers::pi * radiance;
   if (given.two_sided) material.two_sided = *given.two_sided != 0;
   if (given.opacity.value_or(1) < 1) {
-    ignored_.add(kSolidFeature, material.name, Severity::warning);
+    ignored_.add(solidFeature(), material.name, Severity::warning);
   }
-  if (given.opacity_textures > 0) ignored_.add(kMaskFeature, material.name, Severity::warning);
+  if (given.opacity_textures > 0) ignored_.add(maskFeature(), material.name, Severity::warning);
   for (const std::uint32_t bumps : {given.normal_textures, given.height_textures}) {
     if (bumps == 0) continue;
     ignored_.add("normal and bump maps are not used, material", material.name);
@@ -93,10 +94,10 @@ Material AssimpMaterialReader::convert(const AssimpFileMaterial& given, unsigned
   }
   const bool glows = given.emissive_textures > 0;
   if (glows && options_.textures) {
-    ignored_.add(
-        "emission textures of this format are not read; they EMIT NOTHING (--set NAME.radiance "
-        "gives them one all over), material",
-        material.name, Severity::loud);
+    ignored_.add(fmt::format("emission textures of this format are not read; they EMIT NOTHING ({} "
+                             "gives them one all over), material",
+                             spelled("set", "NAME.radiance")),
+                 material.name, Severity::loud);
     material.emission = Vec3(0.0);
   }
   return material;

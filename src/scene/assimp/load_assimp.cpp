@@ -15,6 +15,7 @@
 #include "base/file_name.h"
 #include "base/finite.h"
 #include "base/input_file.h"
+#include "radiosity/spelling.h"
 #include "scene/assimp/assimp_materials.h"
 #include "scene/assimp/assimp_process.h"
 #include "scene/assimp/assimp_scene.h"
@@ -50,9 +51,9 @@ class AssimpReader {
     addNodes(file);
     if (scene_.faceCount() == 0) failWithoutFaces();
     if (file.lights > 0) {
-      scene_.notes.push_back({Severity::warning,
-                              "lights without a surface are left out; make a "
-                              "surface a lamp by --set NAME.radiance=10"});
+      scene_.notes.push_back(
+          {Severity::warning, "lights without a surface are left out; make a surface a lamp by " +
+                                  spelled("set", "NAME.radiance=10")});
     }
     notes_.appendTo(scene_.notes);
     builder_.finish();
@@ -150,10 +151,10 @@ Index AssimpReader::colouredByVertices(Index material) {
 std::vector<Vec3> AssimpReader::coloursOf(const AssimpMesh& mesh, const std::string& object) {
   if (mesh.colours.empty()) return {};
   if (options_.vertex_colours == VertexColours::unused) {
-    notes_.add(
-        "colours of vertices do not change the reflectance (--vertex-colours srgb or linear uses "
-        "them), in",
-        object, Severity::warning);
+    notes_.add(fmt::format(
+                   "colours of vertices do not change the reflectance ({} or linear uses them), in",
+                   spelled("vertex_colours", "srgb")),
+               object, Severity::warning);
     return {};
   }
   std::vector<Vec3> factors;
@@ -164,8 +165,8 @@ std::vector<Vec3> AssimpReader::coloursOf(const AssimpMesh& mesh, const std::str
     if (!factor) {
       fail(
           fmt::format("object {}: a colour of vertex {} is outside 0 to 1; scale it, or leave out "
-                      "--vertex-colours",
-                      object, v));
+                      "{}",
+                      object, v, spelled("vertex_colours")));
     }
     factors.push_back(*factor);
   }

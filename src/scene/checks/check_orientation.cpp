@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <iterator>
 
+#include "radiosity/spelling.h"
 #include "scene/checks/checks.h"
 #include "scene/surface_names.h"
 #include "scene/text.h"
@@ -106,10 +107,11 @@ void SceneChecks::reportFlippedFaces(SceneInfo& info) const {
     info.problems.push_back(
         {Severity::warning,
          fmt::format("{}: {} of {} faces turn their backs where their neighbours show the front: "
-                     "{}, or --two-sided",
+                     "{}, or {}",
                      scene_.surfaces[s].name, flipped[s], info.surfaces[s].faces,
                      flipped[s] == info.surfaces[s].faces ? flipOption({scene_.surfaces[s].name}, 0)
-                                                          : "flip their normals in the file")});
+                                                          : "flip their normals in the file",
+                     spelled("two_sided"))});
   }
   for (const ConnectedPart& part : topology_.parts) {
     if (part.orientable) continue;

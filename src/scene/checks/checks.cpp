@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "radiosity/spelling.h"
 #include "scene/text.h"
 
 namespace radiosity {
@@ -34,9 +35,8 @@ std::optional<Note> whiteMaterials(const Scene& scene) {
   const std::vector<std::string> names(white.begin(), white.end());
   return Note{Severity::warning,
               fmt::format("reflectance 1: absorbs no light, as nothing real does, and cannot be "
-                          "told from an even sky behind it (white paint has 0.8; --set "
-                          "NAME.reflectance): {}",
-                          joinNames(names))};
+                          "told from an even sky behind it (white paint has 0.8; {}): {}",
+                          spelled("set", "NAME.reflectance"), joinNames(names))};
 }
 
 SceneChecks::SceneChecks(const Scene& scene, const WeldedFaces& faces)
@@ -73,10 +73,11 @@ void SceneChecks::reportLight(SceneInfo& info) const {
   if (!any && !(sky_is_seen && sky_shines)) {
     info.problems.push_back(
         {Severity::info,
-         fmt::format("no surface emits light{}: for light, make one a lamp, --set "
-                     "'{}.radiance=10'{}; heat takes temperatures instead",
-                     sky_shines ? " and the sky does not shine in" : "", likelyLamp(scene_),
-                     sky_is_seen ? ", or let the sky shine in, --sky 1" : "")});
+         fmt::format("no surface emits light{}: for light, make one a lamp, {}{}; heat "
+                     "takes temperatures instead",
+                     sky_shines ? " and the sky does not shine in" : "",
+                     spelled("set", fmt::format("'{}.radiance=10'", likelyLamp(scene_))),
+                     sky_is_seen ? ", or let the sky shine in, " + spelled("sky", "1") : "")});
   }
   std::vector<std::string> textured;
   for (const SurfaceInfo& surface : info.surfaces) {
@@ -110,8 +111,8 @@ void SceneChecks::reportExtent(SceneInfo& info) const {
         {Severity::warning,
          fmt::format(
              "the scene measures {:.6g} m across: if the file's unit is not {}, say so with "
-             "--unit mm|cm|m|in|ft",
-             diagonal, scene_.unit)});
+             "{}",
+             diagonal, scene_.unit, spelled("unit", "mm|cm|m|in|ft"))});
   }
   const Vec3 size = glm::max(glm::abs(info.lower), glm::abs(info.upper));
   const double rounding =

@@ -8,6 +8,7 @@
 
 #include "base/geometry/box.h"
 #include "base/geometry/plane_frame.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 namespace {
@@ -59,10 +60,11 @@ std::vector<Note> LostGaps::notes(const Scene& scene, double coincidence) const 
     out.push_back(
         {Severity::warning,
          fmt::format("{} and {} face each other {:.3g} m apart, closer than the coincidence of "
-                     "{:.3g} m: they are one sheet and see nothing of each other (--weld {:.1g} "
+                     "{:.3g} m: they are one sheet and see nothing of each other ({} "
                      "keeps them apart)",
                      scene.surfaces[pair.first].name, scene.surfaces[pair.second].name, gap,
-                     coincidence, 0.1 * gap / box.diagonal())});
+                     coincidence,
+                     spelled("weld", fmt::format("{:.1g}", 0.1 * gap / box.diagonal())))});
   }
   return out;
 }

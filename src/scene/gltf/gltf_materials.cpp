@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "radiosity/spelling.h"
 #include "scene/texture.h"
 
 namespace radiosity {
@@ -136,10 +137,10 @@ Index GltfMaterialReader::emissionTexture(const tinygltf::Material& gltf, Materi
   const bool alone = material.texture == kNone;
   if (!alone &&
       !(texcoords(gltf.emissiveTexture) == texcoords(diffuseOf(gltf, material.name).texture))) {
-    ignored_.add(
-        "the emission texture has other coordinates than the base colour and is not used; it EMITS "
-        "NOTHING (--set NAME.radiance gives it one all over), material",
-        material.name, Severity::loud);
+    ignored_.add(fmt::format("the emission texture has other coordinates than the base colour and "
+                             "is not used; it EMITS NOTHING ({} gives it one all over), material",
+                             spelled("set", "NAME.radiance")),
+                 material.name, Severity::loud);
     material.emission = Vec3(0.0);
     return kNone;
   }
@@ -240,8 +241,8 @@ void GltfMaterialReader::noteIgnored(const tinygltf::Material& gltf, const std::
     if (isSupportedGltfExtension(extension)) continue;
     ignored_.add(extension + " is not used, material", name);
   }
-  if (transparent) ignored_.add(kSolidFeature, name, Severity::warning);
-  if (gltf.alphaMode == "MASK") ignored_.add(kMaskFeature, name, Severity::warning);
+  if (transparent) ignored_.add(solidFeature(), name, Severity::warning);
+  if (gltf.alphaMode == "MASK") ignored_.add(maskFeature(), name, Severity::warning);
 }
 
 }  // namespace

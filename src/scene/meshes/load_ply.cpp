@@ -11,6 +11,7 @@
 #include "base/input_file.h"
 #include "base/lower_case.h"
 #include "base/parse.h"
+#include "radiosity/spelling.h"
 #include "scene/grouped_faces.h"
 #include "scene/mesh_cursor.h"
 #include "scene/readers.h"
@@ -202,11 +203,11 @@ void PlyReader::noteColours() {
     if (of_vertices && options_.vertex_colours != VertexColours::unused) continue;
     faces_.scene().notes.push_back(
         {Severity::info,
-         fmt::format(
-             "colours of each {} are not used: the format does not say what they mean; {} "
-             "does",
-             element.name,
-             of_vertices ? "--vertex-colours srgb or linear" : "--set NAME.reflectance=R,G,B")});
+         fmt::format("colours of each {} are not used: the format does not say what they mean; {} "
+                     "does",
+                     element.name,
+                     of_vertices ? spelled("vertex_colours", "srgb") + " or linear"
+                                 : spelled("set", "NAME.reflectance=R,G,B"))});
   }
 }
 
@@ -257,8 +258,8 @@ Vec3 PlyReader::factorOf(const Vec3& colour, std::size_t vertex) const {
   if (!factor) {
     cursor_.fail(
         fmt::format("the colour of vertex {} is outside 0 to 1; scale it, or leave out "
-                    "--vertex-colours",
-                    vertex));
+                    "{}",
+                    vertex, spelled("vertex_colours")));
   }
   return *factor;
 }

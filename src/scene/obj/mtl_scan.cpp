@@ -152,7 +152,7 @@ void MtlScanner::statement(std::size_t line, std::string_view text) {
   } else if (known == "map_ke") {
     material.radiance_map = mapOf(text.substr(keyword.size()));
   } else if (known == "map_d") {
-    ignored_.add(kMaskFeature, material.name, Severity::warning);
+    ignored_.add(maskFeature(), material.name, Severity::warning);
   } else if (isMap(keyword)) {
     ignored_.add(fmt::format("texture {} is not used, material", keyword), material.name);
   } else if (std::find(kNumeric.begin(), kNumeric.end(), keyword) != kNumeric.end()) {
@@ -207,7 +207,7 @@ void MtlScanner::noteIgnored(std::string_view keyword, const std::vector<double>
   }
   const bool clear = (keyword == "d" && any([](double v) { return v < 1; })) ||
                      (keyword == "Tr" && any([](double v) { return v > 0; }));
-  if (clear) ignored_.add(kSolidFeature, name, Severity::warning);
+  if (clear) ignored_.add(solidFeature(), name, Severity::warning);
   const std::pair<std::string_view, std::string_view> features[] = {
       {"Pr", "roughness (Pr)"},
       {"Pm", "metalness (Pm)"},

@@ -10,6 +10,7 @@
 
 #include "base/input_file.h"
 #include "base/srgb.h"
+#include "radiosity/spelling.h"
 #include "scene/image_path.h"
 #include "scene/obj/mtl_scan.h"
 #include "scene/text.h"
@@ -64,9 +65,9 @@ void ObjMaterialReader::readLibraries(const ObjScan& scan) {
       } else if (!fs::exists(path, error)) {
         library_missing_ = true;
         note(Severity::warning,
-             fmt::format("{}:{}: material file {} is not there; give materials by --set or a JSON "
+             fmt::format("{}:{}: material file {} is not there; give materials by {} or a JSON "
                          "materials file",
-                         scene_.file, line, path.string()));
+                         scene_.file, line, path.string(), spelled("set")));
       } else if (fs::file_size(path, error) == 0) {
         note(Severity::warning, fmt::format("{}: the material file is empty", path.string()));
       } else if (read_.insert(path.lexically_normal()).second) {
@@ -83,8 +84,8 @@ void ObjMaterialReader::readLibrary(const fs::path& path) {
   if (scanned.empty()) {
     note(Severity::warning,
          fmt::format("{}: defines no material (newmtl), so it is no MTL file; give materials by "
-                     "--set or a JSON materials file",
-                     file));
+                     "{} or a JSON materials file",
+                     file, spelled("set")));
     return;
   }
   for (const MtlMaterial& mtl : scanned) {

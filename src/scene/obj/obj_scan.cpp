@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/parse.h"
+#include "radiosity/spelling.h"
 #include "scene/obj/camera_text.h"
 #include "scene/scene_builder.h"
 #include "scene/text.h"
@@ -162,23 +163,23 @@ void ObjScanner::colour(std::size_t count) {
   if (!with_colours_) {
     if (coloured_ == name_) return;
     coloured_ = name_;
-    return ignored_.add(
-        "colours of vertices are not used, since the format does not say what they mean "
-        "(--vertex-colours srgb or linear does), in",
-        name_);
+    return ignored_.add(fmt::format("colours of vertices are not used, since the format does not "
+                                    "say what they mean ({} or linear does), in",
+                                    spelled("vertex_colours", "srgb")),
+                        name_);
   }
   if (count != 6) {
     fail(
         fmt::format("a vertex with a colour has 6 numbers, not {}; correct the line, or leave out "
-                    "--vertex-colours",
-                    count));
+                    "{}",
+                    count, spelled("vertex_colours")));
   }
   Vec3 value{0.0};
   for (std::size_t k = 0; k < 3; ++k) {
     value[int(k)] = parseNumber(words_[4 + k]).value_or(-1);
     if (value[int(k)] >= 0 && value[int(k)] <= 1) continue;
-    fail(fmt::format("the colour {} is outside 0 to 1; scale it, or leave out --vertex-colours",
-                     words_[4 + k]));
+    fail(fmt::format("the colour {} is outside 0 to 1; scale it, or leave out {}", words_[4 + k],
+                     spelled("vertex_colours")));
   }
   scan_.colours.resize(scan_.vertices.size(), kNoColour);
   scan_.colours.back() = value;

@@ -53,7 +53,7 @@ Index ThreeMfMaterials::added(const std::string& name, const std::string& colour
   Material material = defaultMaterial(names_.make(name), options_);
   material.reflectance = reflectanceOf(name, colour);
   if (colour.size() == 9 && !colour.ends_with("FF") && !colour.ends_with("ff")) {
-    notes_.add(kSolidFeature, material.name, Severity::warning);
+    notes_.add(solidFeature(), material.name, Severity::warning);
   }
   scene_.materials.push_back(std::move(material));
   return place->second;

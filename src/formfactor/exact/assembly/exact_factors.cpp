@@ -25,6 +25,7 @@
 #include "mesh/patches/enclosures.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
+#include "radiosity/spelling.h"
 #include "visibility/clipping/clip_kernels.h"
 
 namespace radiosity {
@@ -223,9 +224,9 @@ void findUnexplained(const PatchMesh& mesh, const PatchOrder& order, double clos
       {Severity::warning,
        fmt::format("{} {} off a sum of 1 by up to {:.2g}, more than errors of integration explain: "
                    "faces nearly meet or cross there, by little more than the coincidence of "
-                   "{:.3g} m; a larger --weld joins them; the amount is part of the error figures",
-                   countText(rows), rows == 1 ? "row is" : "rows are", largest,
-                   coincidenceOf(mesh))});
+                   "{:.3g} m; a larger {} joins them; the amount is part of the error figures",
+                   countText(rows), rows == 1 ? "row is" : "rows are", largest, coincidenceOf(mesh),
+                   spelled("weld"))});
 }
 
 /// Reports how far closed rows are from 1 and, if asked to, puts the difference on the occluded
