@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "radiosity/base.h"
-#include "radiosity/exchange_matrix.h"
 #include "radiosity/report_line.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -52,7 +52,7 @@ ClosureReport reportClosure(std::span<const double> row_sums,
 class UncertainEntries {
  public:
   UncertainEntries();
-  /// Begins without entries, for N patches. `scratch`: as in ExchangeMatrix.
+  /// Begins without entries, for N patches. `scratch`: as in SymmetricMatrix.
   explicit UncertainEntries(std::size_t n, std::shared_ptr<ScratchMemory> scratch = nullptr);
   UncertainEntries(const UncertainEntries& other) = delete;
   UncertainEntries& operator=(const UncertainEntries& other) = delete;
@@ -101,9 +101,9 @@ struct SharesBeside {
 /// the tolerance in single precision, 1e-16 in double. A row without uncertain entries stays as it
 /// is. Not every target can be reached (two plates that see only each other exchange the same
 /// area): the report gives the residual that is left. Targets: N finite values >= 0. Errors:
-/// InputError if the matrix is not symmetric, sizes differ, or a target or a share is negative or
-/// not finite; Cancelled, which leaves the matrix as it was.
-ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+/// InputError if sizes differ, or a target or a share is negative or not finite; Cancelled, which
+/// leaves the matrix as it was.
+ClosureReport closeRows(SymmetricMatrix& matrix, const UncertainEntries& uncertain,
                         std::span<const double> target_row_sums, Progress& progress,
                         double tolerance = 1e-9, const SharesBeside& beside = {});
 

@@ -10,7 +10,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/closure.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/exchange_operator.h"
 #include "radiosity/form_factor_method.h"
 #include "radiosity/option_line.h"
 #include "radiosity/patch_mesh.h"
@@ -418,7 +418,7 @@ struct FormFactorReport {
 /// backs is the raw error of closure. That of others is 1 - fronts - backs, but never below 0:
 /// where rounding and the tolerance have more than 1, that is the row's error.
 struct FormFactors {
-  ExchangeMatrix matrix;
+  std::shared_ptr<const ExchangeOperator> matrix;  ///< null: it was left out (readResults())
   std::vector<double> fronts;
   std::vector<double> backs;
   std::vector<double> sky;

@@ -87,7 +87,7 @@ std::vector<double> readAreas(const std::string& path);
 /// Form factors from elsewhere, as solve() takes them; `sky` and `backs`: N, the share of each row
 /// that goes there. report.notes warns of rows that sum to more than 1 and, if the areas are known,
 /// of pairs that are far from reciprocal: such a matrix makes or loses energy.
-FormFactors factorsOfMatrix(ExchangeMatrix matrix, std::vector<double> sky,
+FormFactors factorsOfMatrix(std::shared_ptr<const ExchangeMatrix> matrix, std::vector<double> sky,
                             std::vector<double> backs, bool has_areas = true);
 
 /// The same of a file, with its error figures.

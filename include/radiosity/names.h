@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "radiosity/elements.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/exchange_operator.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"

@@ -162,7 +162,7 @@ class Pipeline {
   /// Reused form factors come without their matrix, which may be large: matrix() reads it.
   const FormFactors& factors();
   /// The matrix of factors(). RunError if another run has replaced its file.
-  const ExchangeMatrix& matrix();
+  const ExchangeOperator& matrix();
   /// The solution, which may not have converged: look at its summary.
   const Solution& solution();
   /// Light at points of all patches, after solution(), which must have values.
@@ -275,7 +275,7 @@ class Pipeline {
   StageKey usedFactorsKey() const;
   bool hasOwnMaterials() const;
   void shareStoredMatrix();
-  ExchangeMatrix shareRows(Processes& processes);
+  std::shared_ptr<const ExchangeMatrix> shareRows(Processes& processes);
   void requireOwnMesh(bool reused) const;
   const PatchMaterials& materialsOfMesh();
 

@@ -49,7 +49,7 @@ struct NamedFactors {
 NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
                             const SurfaceGroups& groups, Progress& progress);
 
-/// The rows of the matrix as they are; the matrix must outlive the result.
+/// The rows of the matrix as they are. Errors: as pairsOf().
 NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors);
 
 /// Of each row of `factors`: 1 - reflectance, the mean over its area and all bands.

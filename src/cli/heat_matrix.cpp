@@ -38,7 +38,7 @@ int heatMatrixFile(Session& session, OutputSet& files) {
   files.write(Format::surface_table, "heat exchange by name",
               [&](const std::string& temporary) { writeHeatTable(temporary, surfaces); });
   files.write(Format::patch_table, "heat exchange by row", [&](const std::string& temporary) {
-    writeHeatRows(temporary, heat, names, factors.matrix.area());
+    writeHeatRows(temporary, heat, names, factors.matrix->area());
   });
   files.commit(session.report, session.progress);
   return exitCode(session, heat.summary.usable(), heat.summary.message);

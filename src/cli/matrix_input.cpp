@@ -85,7 +85,7 @@ int describeMatrixFile(Session& session) {
   Report& report = session.report;
   report.section("matrix", "Form factors without a scene");
   report.count("rows", "rows", rows.size());
-  report.count("entries", "entries that are not 0", factors.matrix.nonZeros());
+  report.count("entries", "entries that are not 0", pairsOf(*factors.matrix).nonZeros());
   report.yesNo("closed", "closed", rows.closed);
   if (!factors.fronts.empty()) {
     const auto [least, most] = std::minmax_element(factors.fronts.begin(), factors.fronts.end());

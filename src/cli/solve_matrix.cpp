@@ -36,7 +36,7 @@ int solveMatrixFile(Session& session, OutputSet& files) {
   summarizeSolution(session.report, solution, factors, PatchMesh(), options, Detail::full);
   if (!solution.radiosity.empty()) {
     files.write(Format::light_csv, "light by row", [&](const std::string& temporary) {
-      writeLightCsv(temporary, file.factors.names, factors.matrix.area(), solution);
+      writeLightCsv(temporary, file.factors.names, factors.matrix->area(), solution);
     });
   }
   files.commit(session.report, session.progress);

@@ -202,7 +202,7 @@ void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
 
 void writeMatrix(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (!files.has(Format::matrix_market)) return;
-  const ExchangeMatrix& matrix = pipeline.matrix();
+  const ExchangeMatrix& matrix = pairsOf(pipeline.matrix());
   // Two indices and 17 digits with sign, point and exponent: at most 40 characters an entry.
   const std::size_t bytes = 40 * matrix.nonZeros();
   const std::string path = files.path(Format::matrix_market);

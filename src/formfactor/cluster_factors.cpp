@@ -25,7 +25,8 @@ double mostPatches(const PatchClusters& clusters) {
 FormFactors clusterFactors(const FormFactors& factors, const PatchMesh& mesh, Progress& progress) {
   const PatchClusters& clusters = made(mesh.clusters);
   FormFactors result;
-  result.matrix = aggregated(factors.matrix, clusters.of_patch, clusters.size(), progress);
+  const auto matrix = aggregated(*factors.matrix, clusters.of_patch, clusters.size(), progress);
+  result.matrix = matrix;
   result.fronts = clusterMeans(mesh, factors.fronts, 1);
   result.backs = clusterMeans(mesh, factors.backs, 1);
   result.sky = clusterMeans(mesh, factors.sky, 1);
@@ -35,9 +36,10 @@ FormFactors clusterFactors(const FormFactors& factors, const PatchMesh& mesh, Pr
   for (double& figure : result.error) figure *= most;
   result.method = factors.method;
   result.report = factors.report;
-  const double squares = weightedSquares(result.matrix);
+  const double squares = weightedSquares(*matrix);
   if (squares > 0) {
-    result.report.error_figure *= most * std::sqrt(weightedSquares(factors.matrix) / squares);
+    result.report.error_figure *=
+        most * std::sqrt(weightedSquares(pairsOf(*factors.matrix)) / squares);
   }
   return result;
 }

@@ -145,7 +145,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
       method.secondsPreparing() + (prepared.emitters ? prepared.emitters->seconds : 0.0);
   report.seconds_plan = prepared.seconds - preparing;
   report.estimated_seconds = preparing + plan.seconds;
-  report.matrix_bytes = result.matrix.bytes();
+  report.matrix_bytes = result.matrix->bytes();
   report.seconds = prepared.seconds + watch.seconds();
   return result;
 }

@@ -11,6 +11,7 @@
 #include "base/processes.h"
 #include "formfactor/known_rows.h"
 #include "formfactor/row_memory.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
@@ -82,8 +83,9 @@ struct MethodEntry {
   std::unique_ptr<PreparedMethod> (*prepare)(const PatchMesh&, const FormFactorOptions&);
   /// For the other processes, while process 0 is in compute(): makes the rows that fall to this
   /// one.
-  ExchangeMatrix (*rows_for_others)(const PatchMesh&, const FormFactorOptions&, Processes&,
-                                    Progress&, RowJournal*);
+  std::shared_ptr<const ExchangeMatrix> (*rows_for_others)(const PatchMesh&,
+                                                           const FormFactorOptions&, Processes&,
+                                                           Progress&, RowJournal*);
 };
 /// Of a method that can be asked for, and not automatic.
 const MethodEntry& entryOf(FormFactorMethod method);

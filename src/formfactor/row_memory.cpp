@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/figure_text.h"
-#include "matrix/matrix_row.h"
+#include "matrix/expected_bytes.h"
 
 namespace radiosity {
 

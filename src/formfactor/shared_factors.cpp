@@ -64,8 +64,8 @@ void tellOthers(Processes& processes, const PatchMesh& mesh, FormFactorMethod me
   processes.broadcastValue(checksum);
 }
 
-ExchangeMatrix shareFormFactors(const PatchMesh& mesh, Processes& processes, Progress& progress,
-                                RowJournal* journal) {
+std::shared_ptr<const ExchangeMatrix> shareFormFactors(const PatchMesh& mesh, Processes& processes,
+                                                       Progress& progress, RowJournal* journal) {
   FormFactorOptions options;
   broadcastOptions(processes, options);
   std::uint64_t checksum = 0;

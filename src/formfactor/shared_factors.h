@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/processes.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
@@ -17,7 +18,7 @@ void tellOthers(Processes& processes, const PatchMesh& mesh, FormFactorMethod me
 /// Called by the others while process 0 is in computeFormFactors(): computes a share of the rows
 /// and returns them, all others empty. `mesh`: the same as process 0's, else RunError. `journal`:
 /// this process's own, as of computeFormFactors(); may be null.
-ExchangeMatrix shareFormFactors(const PatchMesh& mesh, Processes& processes, Progress& progress,
-                                RowJournal* journal);
+std::shared_ptr<const ExchangeMatrix> shareFormFactors(const PatchMesh& mesh, Processes& processes,
+                                                       Progress& progress, RowJournal* journal);
 
 }  // namespace radiosity

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/processor_clock.h"
-#include "formfactor/rays/patch_irradiance.h"
+#include "formfactor/patch_irradiance.h"
 #include "heat/conditions.h"
 #include "heat/heat_solve.h"
 #include "mesh/clusters/cluster_means.h"

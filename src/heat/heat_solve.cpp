@@ -47,12 +47,15 @@ bool hasTable(const HeatCondition& condition) {
                      [](const Emissivity& e) { return !e.temperatures.empty(); });
 }
 
-void checkFactors(const FormFactors& factors) {
-  const std::size_t n = factors.matrix.size();
+/// Its matrix.
+const ExchangeOperator& checked(const FormFactors& factors) {
+  if (!factors.matrix) throw InputError("heat: the form factors came without their matrix");
+  const std::size_t n = factors.matrix->size();
   if (factors.fronts.size() != n || factors.backs.size() != n || factors.sky.size() != n) {
     throw InputError(
         fmt::format("heat: a matrix of {} rows needs accounts of as many (fronts, backs, sky)", n));
   }
+  return *factors.matrix;
 }
 
 }  // namespace
@@ -64,10 +67,9 @@ HeatSolve::HeatSolve(const FormFactors& factors, const HeatRows& rows, const Hea
       options_(options),
       progress_(progress),
       black_(options),
-      n_(factors.matrix.size()),
+      n_(checked(factors).size()),
       width_(std::size_t(options.bands.count())),
-      area_(factors.matrix.area()) {
-  checkFactors(factors);
+      area_(factors.matrix->area()) {
   validate(rows.conditions, options.bands.count());
   nodes_ = heatNodes(rows, area_);
   temperature_.resize(n_);
@@ -184,7 +186,7 @@ void HeatSolve::findDark() {
   }
   for (bool changed = true; changed;) {
     if (std::all_of(marks.begin(), marks.end(), [](double mark) { return mark != 0; })) break;
-    markAllThatSee(factors_.matrix, int(width_), marks);
+    markAllThatSee(*factors_.matrix, int(width_), marks);
     changed = false;
     for (const HeatNode& node : nodes_.nodes) changed = markNode(node, marks) || changed;
     progress_.check();
@@ -364,7 +366,7 @@ void HeatSolve::refuseCold(std::size_t n) const {
 
 /// The true residuals: H is multiplied anew. Values that are not finite give infinity.
 HeatSolve::Residuals HeatSolve::residuals(HeatFields& fields) const {
-  factors_.matrix.product(fields.radiosity, int(width_), fields.irradiance);
+  factors_.matrix->product(fields.radiosity, int(width_), fields.irradiance);
   for (std::size_t k = 0; k < falling_.size(); ++k) fields.irradiance[k] += falling_[k];
   Residuals worst;
   if (!allFinite(fields.radiosity) || !allFinite(fields.irradiance) || !allFinite(temperature_)) {
@@ -400,7 +402,7 @@ HeatSolution HeatSolve::run() {
   const double tolerance = std::max(kRounding, kLinearShare * options_.tolerance);
   do {
     const HeatSystem s = system(fields.irradiance);
-    fields = solveHeatSystem(factors_.matrix, s, fields.irradiance, tolerance, progress_);
+    fields = solveHeatSystem(*factors_.matrix, s, fields.irradiance, tolerance, progress_);
     products += fields.products;
     step(s, fields);
     residuals = this->residuals(fields);

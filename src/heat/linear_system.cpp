@@ -24,7 +24,7 @@ Eigen::Map<const Eigen::VectorXd> asVector(const std::vector<double>& values) {
   return {values.data(), Eigen::Index(values.size())};
 }
 
-std::vector<double> received(const ExchangeMatrix& matrix, const std::vector<double>& radiosity,
+std::vector<double> received(const ExchangeOperator& matrix, const std::vector<double>& radiosity,
                              int bands) {
   std::vector<double> irradiance(radiosity.size(), 0.0);
   matrix.product(radiosity, bands, irradiance);
@@ -35,19 +35,13 @@ std::vector<double> received(const ExchangeMatrix& matrix, const std::vector<dou
 /// absorbs_jl] H_jl, with P_ik = sum over the rows m of j's node of F_im emits_mk.
 class DenseSystem {
  public:
-  DenseSystem(const ExchangeMatrix& matrix, const HeatSystem& system)
+  DenseSystem(const ExchangeOperator& matrix, const HeatSystem& system)
       : system_(system),
         rows_(Eigen::Index(matrix.size())),
         bands_(Eigen::Index(system.bands)),
-        factors_(Eigen::MatrixXd::Zero(rows_, rows_)),
+        values_(matrix.dense()),
+        factors_(values_.data(), rows_, rows_),
         members_(system.nodes) {
-    matrix.forPanels([&](const RowPanel& panel) {
-      for (std::size_t i = panel.first(); i < panel.last(); ++i) {
-        panel.forRow(i, [&](std::size_t j, double value) {
-          factors_(Eigen::Index(i), Eigen::Index(j)) = value;
-        });
-      }
-    });
     for (std::size_t j = 0; j < system.node.size(); ++j) {
       if (system.node[j] != kNone) members_[system.node[j]].push_back(Eigen::Index(j));
     }
@@ -86,18 +80,19 @@ class DenseSystem {
   const HeatSystem& system_;
   Eigen::Index rows_;
   Eigen::Index bands_;
-  Eigen::MatrixXd factors_;
+  std::vector<double> values_;
+  Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> factors_;
   std::vector<std::vector<Eigen::Index>> members_;  ///< rows of each node
 };
 
 /// The constant c of H = L H + c.
-std::vector<double> constantOf(const ExchangeMatrix& matrix, const HeatSystem& system) {
+std::vector<double> constantOf(const ExchangeOperator& matrix, const HeatSystem& system) {
   std::vector<double> constant = received(matrix, system.source, system.bands);
   for (std::size_t k = 0; k < constant.size(); ++k) constant[k] += system.falling[k];
   return constant;
 }
 
-std::vector<double> solveDirectly(const ExchangeMatrix& matrix, const HeatSystem& system) {
+std::vector<double> solveDirectly(const ExchangeOperator& matrix, const HeatSystem& system) {
   const std::vector<double> constant = constantOf(matrix, system);
   const Eigen::VectorXd solved =
       DenseSystem(matrix, system).matrix().partialPivLu().solve(asVector(constant));
@@ -106,7 +101,7 @@ std::vector<double> solveDirectly(const ExchangeMatrix& matrix, const HeatSystem
 
 class Gmres {
  public:
-  Gmres(const ExchangeMatrix& matrix, const HeatSystem& system, Progress& progress)
+  Gmres(const ExchangeOperator& matrix, const HeatSystem& system, Progress& progress)
       : matrix_(matrix),
         system_(system),
         constant_(constantOf(matrix, system)),
@@ -157,7 +152,7 @@ class Gmres {
       irradiance[k] += correction[Eigen::Index(k)];
   }
 
-  const ExchangeMatrix& matrix_;
+  const ExchangeOperator& matrix_;
   const HeatSystem& system_;
   std::vector<double> constant_;
   int most_steps_;
@@ -188,7 +183,7 @@ std::vector<double> HeatSystem::radiosityOf(const std::vector<double>& irradianc
   return radiosity;
 }
 
-HeatFields solveHeatSystem(const ExchangeMatrix& matrix, const HeatSystem& system,
+HeatFields solveHeatSystem(const ExchangeOperator& matrix, const HeatSystem& system,
                            const std::vector<double>& start, double tolerance, Progress& progress,
                            LinearMethod method) {
   const std::size_t unknowns = system.source.size();

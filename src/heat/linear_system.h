@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/exchange_operator.h"
 
 namespace radiosity {
 
@@ -43,7 +43,7 @@ inline constexpr std::size_t kMostDirect = 1500;
 /// until the largest entry of the residual is below `tolerance` times the largest H. A closed room
 /// whose rows reflect or emit again all irradiance costs GMRES one step. The system must not be
 /// singular. The bits do not depend on the number of threads. Throws Cancelled.
-HeatFields solveHeatSystem(const ExchangeMatrix& matrix, const HeatSystem& system,
+HeatFields solveHeatSystem(const ExchangeOperator& matrix, const HeatSystem& system,
                            const std::vector<double>& start, double tolerance, Progress& progress,
                            LinearMethod method = LinearMethod::automatic);
 

@@ -112,7 +112,7 @@ std::vector<SurfaceHeat> heatByName(const HeatSolution& solution,
     group[i] = name.empty() ? next : known.emplace(name, next).first->second;
     if (group[i] == next) of_groups.push_back(name.empty() ? fmt::format("row {}", i + 1) : name);
   }
-  return summed(solution, {factors.matrix.area(), group, factors.error}, of_groups);
+  return summed(solution, {factors.matrix->area(), group, factors.error}, of_groups);
 }
 
 }  // namespace radiosity

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -13,7 +15,7 @@ namespace radiosity {
 
 namespace {
 
-void requireGroups(const ExchangeMatrix& matrix, std::span<const Index> group_of,
+void requireGroups(const ExchangeOperator& matrix, std::span<const Index> group_of,
                    std::size_t groups) {
   if (group_of.size() != matrix.size()) {
     throw InputError(fmt::format("exchange matrix: groups of {} patches are given for {}",
@@ -26,7 +28,7 @@ void requireGroups(const ExchangeMatrix& matrix, std::span<const Index> group_of
   }
 }
 
-std::vector<double> areasOf(const ExchangeMatrix& matrix, std::span<const Index> group_of,
+std::vector<double> areasOf(const ExchangeOperator& matrix, std::span<const Index> group_of,
                             std::size_t groups) {
   std::vector<double> area(groups, 0.0);
   for (std::size_t i = 0; i < group_of.size(); ++i) area[group_of[i]] += matrix.area()[i];
@@ -43,11 +45,34 @@ std::vector<std::vector<Index>> patchesOf(std::span<const Index> group_of, std::
   return patches;
 }
 
-ExchangeMatrix aggregatedRows(const ExchangeMatrix& matrix, std::span<const Index> group_of,
-                              std::vector<double> area, Precision stored, Progress& progress) {
+/// Stores the row of a group with these exchange areas.
+void storeRow(std::size_t group, std::span<const double> exchange, RowMatrix& result) {
+  const double inverse = inverseOf(result.area()[group]);
+  std::vector<Index> columns;
+  std::vector<double> values;
+  for (Index other = 0; other < exchange.size(); ++other) {
+    const double factor = exchange[other] * inverse;
+    if (!(factor > 0)) continue;
+    columns.push_back(other);
+    values.push_back(factor);
+  }
+  result.setRow(group, columns, values);
+}
+
+/// Stores the exchange areas of row k of the triangle.
+void storeUpper(std::size_t k, std::span<double> exchange, SymmetricMatrix& result) {
+  const double inverse = inverseOf(result.area()[result.order()[k]]);
+  for (double& value : exchange) value *= inverse;
+  result.setUpperRow(k, exchange);
+}
+
+std::shared_ptr<const ExchangeMatrix> aggregatedRows(const RowMatrix& matrix,
+                                                     std::span<const Index> group_of,
+                                                     std::vector<double> area, Precision stored,
+                                                     Progress& progress) {
   const std::size_t groups = area.size();
   const std::vector<std::vector<Index>> patches = patchesOf(group_of, groups);
-  ExchangeMatrix result(std::move(area), stored);
+  auto result = std::make_shared<RowMatrix>(std::move(area), stored);
   parallelFor(groups, 1, [&](std::size_t group) {
     if (progress.cancelled()) return;
     std::vector<double> exchange(groups, 0.0);
@@ -55,16 +80,7 @@ ExchangeMatrix aggregatedRows(const ExchangeMatrix& matrix, std::span<const Inde
       const double a = matrix.area()[i];
       matrix.forRow(i, [&](Index j, double factor) { exchange[group_of[j]] += a * factor; });
     }
-    const double inverse = inverseOf(result.area()[group]);
-    std::vector<Index> columns;
-    std::vector<double> values;
-    for (Index other = 0; other < groups; ++other) {
-      const double factor = exchange[other] * inverse;
-      if (!(factor > 0)) continue;
-      columns.push_back(other);
-      values.push_back(factor);
-    }
-    result.setRow(group, columns, values);
+    storeRow(group, exchange, *result);
     progress.advance(patches[group].size());
   });
   progress.check();
@@ -104,7 +120,7 @@ class Triangle {
 
 /// Sums exchange areas over the pairs of a symmetric matrix; a pair within one group counts from
 /// both ends. `place`: the place of the group, by the position of the patch.
-Triangle exchangeOfGroups(const ExchangeMatrix& matrix, std::span<const Index> place,
+Triangle exchangeOfGroups(const SymmetricMatrix& matrix, std::span<const Index> place,
                           std::size_t groups, Progress& progress) {
   Triangle triangle(groups);
   std::vector<double> exchange(groups, 0.0);  // of one patch, by place
@@ -126,29 +142,10 @@ Triangle exchangeOfGroups(const ExchangeMatrix& matrix, std::span<const Index> p
   return triangle;
 }
 
-/// The same if the rows lie in several processes, panel by panel: each pair of two groups counts in
-/// the row of its first group. The sums are in another order.
-Triangle exchangeOfSharedRows(const ExchangeMatrix& matrix, std::span<const Index> place_of,
-                              std::span<const Index> group_of, Progress& progress) {
-  Triangle triangle(place_of.size());
-  std::vector<double> exchange(place_of.size(), 0.0);  // of one patch, by place
-  matrix.forPanels([&](const RowPanel& rows) {
-    for (std::size_t i = rows.first(); i < rows.last(); ++i) {
-      progress.check();
-      rows.forRow(i, [&](Index j, double factor) { exchange[place_of[group_of[j]]] += factor; });
-      const Index own = place_of[group_of[i]];
-      for (std::size_t other = own; other < exchange.size(); ++other) {
-        triangle.add(own, other, matrix.area()[i] * exchange[other]);
-      }
-      std::ranges::fill(exchange, 0.0);
-      progress.advance();
-    }
-  });
-  return triangle;
-}
-
-ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const Index> group_of,
-                                  std::vector<double> area, Precision stored, Progress& progress) {
+std::shared_ptr<const ExchangeMatrix> aggregatedTriangle(const SymmetricMatrix& matrix,
+                                                         std::span<const Index> group_of,
+                                                         std::vector<double> area, Precision stored,
+                                                         Progress& progress) {
   const std::size_t groups = area.size();
   std::vector<Index> order = orderOfGroups(matrix.order(), group_of, groups);
   std::vector<Index> place_of(groups);
@@ -156,31 +153,76 @@ ExchangeMatrix aggregatedTriangle(const ExchangeMatrix& matrix, std::span<const 
   std::vector<Index> place;
   place.reserve(group_of.size());
   for (const Index i : matrix.order()) place.push_back(place_of[group_of[i]]);
-  Triangle exchange = matrix.sharedRows() != nullptr
-                          ? exchangeOfSharedRows(matrix, place_of, group_of, progress)
-                          : exchangeOfGroups(matrix, place, groups, progress);
-  ExchangeMatrix result = ExchangeMatrix::symmetric(std::move(area), std::move(order), stored);
-  parallelFor(groups, 16, [&](std::size_t k) {
-    const std::span<double> row = exchange.row(k);
-    const double inverse = inverseOf(result.area()[result.order()[k]]);
-    for (double& value : row) value *= inverse;
-    result.setUpperRow(k, row);
-  });
+  Triangle exchange = exchangeOfGroups(matrix, place, groups, progress);
+  auto result = std::make_shared<SymmetricMatrix>(std::move(area), std::move(order), stored);
+  parallelFor(groups, 16, [&](std::size_t k) { storeUpper(k, exchange.row(k), *result); });
+  return result;
+}
+
+/// Exchange areas of all pairs of groups: what rows see of some groups at a time is a product.
+std::vector<double> exchangeByProducts(const ExchangeOperator& factors,
+                                       std::span<const Index> group_of, std::size_t groups,
+                                       Progress& progress) {
+  constexpr std::size_t kGroupsAtOnce = 16;
+  std::vector<double> exchange(groups * groups, 0.0);
+  for (std::size_t first = 0; first < groups; first += kGroupsAtOnce) {
+    progress.check();
+    const std::size_t width = std::min(kGroupsAtOnce, groups - first);
+    std::vector<double> members(factors.size() * width, 0.0);
+    std::vector<double> seen(members.size());
+    for (std::size_t j = 0; j < group_of.size(); ++j) {
+      if (group_of[j] - first < width) members[j * width + group_of[j] - first] = 1;
+    }
+    factors.product(members, int(width), seen);
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const std::size_t i = k / width;
+      exchange[group_of[i] * groups + first + k % width] += factors.area()[i] * seen[k];
+    }
+  }
+  progress.advance(factors.size());
+  return exchange;
+}
+
+/// Of form factors whose pairs are not stored in this process.
+std::shared_ptr<const ExchangeMatrix> aggregatedProducts(const ExchangeOperator& factors,
+                                                         std::span<const Index> group_of,
+                                                         std::vector<double> area, Precision stored,
+                                                         Progress& progress) {
+  const std::size_t groups = area.size();
+  std::vector<double> exchange = exchangeByProducts(factors, group_of, groups, progress);
+  const auto rowOf = [&](std::size_t g) { return std::span(exchange).subspan(g * groups, groups); };
+  if (factors.isSymmetric()) {
+    std::vector<Index> order(groups);
+    std::iota(order.begin(), order.end(), Index(0));
+    auto result = std::make_shared<SymmetricMatrix>(std::move(area), std::move(order), stored);
+    for (std::size_t g = 0; g < groups; ++g) storeUpper(g, rowOf(g).subspan(g), *result);
+    return result;
+  }
+  auto result = std::make_shared<RowMatrix>(std::move(area), stored);
+  for (std::size_t g = 0; g < groups; ++g) storeRow(g, rowOf(g), *result);
   return result;
 }
 
 }  // namespace
 
-ExchangeMatrix aggregated(const ExchangeMatrix& matrix, std::span<const Index> group_of,
-                          std::size_t groups, Progress& progress, std::optional<Precision> stored) {
-  requireGroups(matrix, group_of, groups);
-  const Precision precision = stored.value_or(matrix.precision());
-  std::vector<double> area = areasOf(matrix, group_of, groups);
-  progress.begin("summing over groups of patches", matrix.size());
-  ExchangeMatrix result =
-      matrix.isSymmetric()
-          ? aggregatedTriangle(matrix, group_of, std::move(area), precision, progress)
-          : aggregatedRows(matrix, group_of, std::move(area), precision, progress);
+std::shared_ptr<const ExchangeMatrix> aggregated(const ExchangeOperator& factors,
+                                                 std::span<const Index> group_of,
+                                                 std::size_t groups, Progress& progress,
+                                                 std::optional<Precision> stored) {
+  requireGroups(factors, group_of, groups);
+  std::vector<double> area = areasOf(factors, group_of, groups);
+  progress.begin("summing over groups of patches", factors.size());
+  std::shared_ptr<const ExchangeMatrix> result;
+  if (const auto* const triangle = dynamic_cast<const SymmetricMatrix*>(&factors)) {
+    result = aggregatedTriangle(*triangle, group_of, std::move(area),
+                                stored.value_or(triangle->precision()), progress);
+  } else if (const auto* const rows = dynamic_cast<const RowMatrix*>(&factors)) {
+    result = aggregatedRows(*rows, group_of, std::move(area), stored.value_or(rows->precision()),
+                            progress);
+  } else {
+    result = aggregatedProducts(factors, group_of, std::move(area),
+                                stored.value_or(Precision::double_precision), progress);
+  }
   progress.end();
   return result;
 }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "matrix/shared_rows.h"
 #include "radiosity/exchange_matrix.h"
 
 namespace radiosity {
@@ -22,8 +21,8 @@ inline std::size_t bothEstimatesBytes(std::size_t n, std::size_t threads) {
 
 /// Calls visit(i, row, column) for every i, row[j] = F_ij and column[j] = F_ji, both N values with
 /// zeros where nothing is stored. Calls run in parallel. It gathers columns a block at a time, so
-/// that memory beyond the matrix is kColumnsAtOnce * N values instead of a transposed copy. Row
-/// form only.
+/// that memory beyond the matrix is kColumnsAtOnce * N values instead of a transposed copy. For
+/// matrices that are not symmetric.
 template <class Visit>
 void forBothEstimates(const ExchangeMatrix& matrix, const Visit& visit) {
   constexpr std::size_t kBlock = kColumnsAtOnce;
@@ -32,14 +31,7 @@ void forBothEstimates(const ExchangeMatrix& matrix, const Visit& visit) {
   for (std::size_t begin = 0; begin < n; begin += kBlock) {
     const std::size_t count = std::min(kBlock, n - begin);
     std::fill(columns.begin(), columns.end(), 0.0);
-    if (const SharedRows* shared = matrix.sharedRows(); shared != nullptr) {
-      shared->columns(begin, begin + count, std::span(columns).first(count * n));
-    } else {
-      parallelFor(n, kBlock, [&](std::size_t j) {
-        matrix.forRow(j, begin, begin + count,
-                      [&](Index i, double value) { columns[(i - begin) * n + j] = value; });
-      });
-    }
+    matrix.columns(begin, begin + count, std::span(columns).first(count * n));
     const RowPanel rows(matrix, begin, begin + count);
     parallelFor(count, 1, [&](std::size_t k) {
       std::vector<double> row(n, 0.0);

@@ -55,7 +55,7 @@ constexpr double kDamping = 1e-2;
 /// max(-A_k f_k, w_k m_k) with their value f_k and w_k = (A_k e_k)^2.
 class LeastSquaresClosure {
  public:
-  LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+  LeastSquaresClosure(SymmetricMatrix& matrix, const UncertainEntries& uncertain,
                       std::span<const double> target, const SharesBeside& beside,
                       Progress& progress);
 
@@ -77,7 +77,7 @@ class LeastSquaresClosure {
   std::vector<double> scaledDiagonal();
   std::vector<double> newtonStep(double tolerance);
 
-  ExchangeMatrix& matrix_;
+  SymmetricMatrix& matrix_;
   const UncertainEntries& uncertain_;
   Progress& progress_;
   TrianglePass pass_;
@@ -105,7 +105,7 @@ class LeastSquaresClosure {
   ClosureReport report_;
 };
 
-LeastSquaresClosure::LeastSquaresClosure(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+LeastSquaresClosure::LeastSquaresClosure(SymmetricMatrix& matrix, const UncertainEntries& uncertain,
                                          std::span<const double> target, const SharesBeside& beside,
                                          Progress& progress)
     : matrix_(matrix),
@@ -360,8 +360,8 @@ void LeastSquaresClosure::apply() {
   parallelFor(n, kClosureGrain, [&](std::size_t k) {
     const UncertainEntries::Row& uncertain = uncertain_.row(k);
     if (uncertain.own == 0 && uncertain.runs.empty()) return;
-    const ExchangeMatrix::UpperEntries before = matrix_.upperEntries(k);
-    ExchangeMatrix::UpperEntries after;
+    const SymmetricMatrix::UpperEntries before = matrix_.upperEntries(k);
+    SymmetricMatrix::UpperEntries after;
     std::size_t next = 0;
     const auto keepBelow = [&](std::size_t position) {
       for (; next < before.positions.size() && before.positions[next] < position; ++next) {
@@ -464,15 +464,14 @@ ClosureReport reportClosure(std::span<const double> row_sums,
   return report;
 }
 
-ClosureReport closeRows(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+ClosureReport closeRows(SymmetricMatrix& matrix, const UncertainEntries& uncertain,
                         std::span<const double> target_row_sums, Progress& progress,
                         double tolerance, const SharesBeside& beside) {
   checkTarget(target_row_sums, matrix.size());
   checkBeside(beside, matrix.size());
-  if (!matrix.isSymmetric() || uncertain.size() != matrix.size()) {
-    throw InputError(fmt::format("closure: uncertain entries of {} rows for a {} matrix of {}",
-                                 uncertain.size(),
-                                 matrix.isSymmetric() ? "symmetric" : "row by row", matrix.size()));
+  if (uncertain.size() != matrix.size()) {
+    throw InputError(fmt::format("closure: uncertain entries of {} rows for a matrix of {}",
+                                 uncertain.size(), matrix.size()));
   }
   LeastSquaresClosure closure(matrix, uncertain, target_row_sums, beside, progress);
   // Half of the tolerance is left for the rounding of stored values.

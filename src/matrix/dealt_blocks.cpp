@@ -54,7 +54,7 @@ std::string Dealing::round(std::size_t number, const WhileWaiting& waiting) {
   std::vector<RowsPart> parts = exchangeParts(blocks, waiting);
   if (rank < blocks.size()) {
     rows_.first = blocks[rank].first;
-    mergeParts(parts, own_.size(), rows_.starts, rows_.columns, rows_.values);
+    mergeParts(parts, own_.size(), rows_);
     guard([&] { taker_->take(first + rank, rows_); });
   }
   return reportProblems(waiting);

@@ -15,22 +15,6 @@
 
 namespace radiosity {
 
-/// Some rows of F, whole: compressed, sorted.
-struct WholeRows {
-  std::size_t first = 0;
-  std::vector<std::size_t> starts;  ///< a row more than there are
-  std::vector<Index> columns;       ///< these two can be longer than the rows
-  std::vector<double> values;
-
-  /// As ExchangeMatrix::forRow().
-  template <class Visit>
-  void forRow(std::size_t i, Visit&& visit) const {
-    for (std::size_t at = starts[i - first]; at < starts[i - first + 1]; ++at) {
-      visit(columns[at], values[at]);
-    }
-  }
-};
-
 /// Takes the blocks of one process. All functions may throw; then the deal ends.
 class BlockTaker {
  public:
@@ -38,7 +22,7 @@ class BlockTaker {
   virtual ~BlockTaker() = default;
   BlockTaker(const BlockTaker&) = delete;
   BlockTaker& operator=(const BlockTaker&) = delete;
-  virtual void take(std::size_t block, const WholeRows& rows) = 0;
+  virtual void take(std::size_t block, const CompressedRows& rows) = 0;
   virtual void end() = 0;
 };
 
@@ -83,7 +67,7 @@ class Dealing {
   DealtBlocks dealt_;
   std::unique_ptr<BlockTaker> taker_;
   std::string problem_;
-  WholeRows rows_;
+  CompressedRows rows_;
 };
 
 }  // namespace radiosity

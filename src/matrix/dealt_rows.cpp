@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMessageBytes = std::size_t(1) << 24;
 
 /// The first row of each process's share, and the end.
-std::vector<std::size_t> sharesOf(const ExchangeMatrix& whole, std::size_t processes) {
+std::vector<std::size_t> sharesOf(const SymmetricMatrix& whole, std::size_t processes) {
   const std::size_t n = whole.size();
   std::size_t total = 0;
   for (std::size_t k = 0; k < n; ++k) total += workOf(whole.upperRuns(k));
@@ -33,14 +33,14 @@ std::vector<std::size_t> sharesOf(const ExchangeMatrix& whole, std::size_t proce
   return starts;
 }
 
-void putRow(const ExchangeMatrix& matrix, std::size_t k, ByteWriter& bytes) {
+void putRow(const SymmetricMatrix& matrix, std::size_t k, ByteWriter& bytes) {
   bytes.put(Index(k));
   bytes.put(matrix.diagonal(k));
   putRuns(matrix.upperRuns(k), matrix.precision(), bytes);
 }
 
 /// Sends rows `first` to `last` - 1 in messages, and an empty message at the end.
-void sendRows(Processes& processes, int to, const ExchangeMatrix& whole, std::size_t first,
+void sendRows(Processes& processes, int to, const SymmetricMatrix& whole, std::size_t first,
               std::size_t last, const WhileWaiting& waiting) {
   while (first < last) {
     ByteWriter bytes;
@@ -51,7 +51,7 @@ void sendRows(Processes& processes, int to, const ExchangeMatrix& whole, std::si
   processes.send(to, {});
 }
 
-void takeRow(ByteReader& bytes, ExchangeMatrix& own) {
+void takeRow(ByteReader& bytes, SymmetricMatrix& own) {
   const auto k = bytes.get<Index>();
   std::vector<Index> positions{k};
   std::vector<double> factors{bytes.get<double>()};
@@ -64,8 +64,8 @@ void takeRow(ByteReader& bytes, ExchangeMatrix& own) {
 
 }  // namespace
 
-ExchangeMatrix dealRows(Processes& processes, const ExchangeMatrix& whole,
-                        const WhileWaiting& waiting) {
+std::shared_ptr<const SymmetricMatrix> dealRows(Processes& processes, const SymmetricMatrix& whole,
+                                                const WhileWaiting& waiting) {
   std::vector<double> area(whole.area().begin(), whole.area().end());
   std::vector<Index> order(whole.order().begin(), whole.order().end());
   Precision precision = whole.precision();
@@ -77,31 +77,31 @@ ExchangeMatrix dealRows(Processes& processes, const ExchangeMatrix& whole,
     const auto share = std::size_t(p);
     sendRows(processes, p, whole, starts[share], starts[share + 1], waiting);
   }
-  ExchangeMatrix own =
-      ExchangeMatrix::symmetric(std::move(area), std::move(order), precision, whole.scratch());
+  auto own = std::make_shared<SymmetricMatrix>(std::move(area), std::move(order), precision,
+                                               whole.scratch());
   for (std::size_t k = starts[0]; k < starts[1]; ++k) {
-    const ExchangeMatrix::UpperEntries row = whole.upperEntries(k);
-    own.setUpperRow(k, row.positions, row.factors);
+    const SymmetricMatrix::UpperEntries row = whole.upperEntries(k);
+    own->setUpperRow(k, row.positions, row.factors);
   }
   return own;
 }
 
-ExchangeMatrix receiveRows(Processes& processes) {
+std::shared_ptr<const SymmetricMatrix> receiveRows(Processes& processes) {
   std::vector<double> area;
   std::vector<Index> order;
   Precision precision = Precision::single_precision;
   processes.broadcastArray(area);
   processes.broadcastArray(order);
   processes.broadcastValue(precision);
-  ExchangeMatrix own = ExchangeMatrix::symmetric(std::move(area), std::move(order), precision);
+  auto own = std::make_shared<SymmetricMatrix>(std::move(area), std::move(order), precision);
   for (;;) {
     const Processes::Message message = processes.receive(0);
     if (message.bytes.empty()) return own;
-    for (ByteReader bytes(message.bytes); bytes.left() > 0;) takeRow(bytes, own);
+    for (ByteReader bytes(message.bytes); bytes.left() > 0;) takeRow(bytes, *own);
   }
 }
 
-void evenOut(Processes& processes, ExchangeMatrix& own, const WhileWaiting& waiting) {
+void evenOut(Processes& processes, SymmetricMatrix& own, const WhileWaiting& waiting) {
   const RowOwners owners = findOwners(processes, own, waiting);
   const std::vector<RowMove> moves = evenMoves(owners, processes.size());
   if (moves.empty()) return;

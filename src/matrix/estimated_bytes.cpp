@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "matrix/expected_bytes.h"
-#include "matrix/matrix_row.h"
 #include "matrix/run_row.h"
 #include "matrix/uncertain_row.h"
 #include "radiosity/matrix_functions.h"

@@ -1,11 +1,16 @@
-// The expected bytes of a symmetric matrix of a scene; estimateSymmetricBytes() is the upper bound.
+// Bytes of values, and those expected of a symmetric matrix of a scene; estimateSymmetricBytes() is
+// the upper bound.
 #pragma once
 
 #include <cstddef>
 
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/exchange_operator.h"
 
 namespace radiosity {
+
+inline std::size_t valueBytes(Precision precision) {
+  return precision == Precision::single_precision ? sizeof(float) : sizeof(double);
+}
 
 /// The bytes of N rows with `entries_per_row` entries on both sides of the diagonal. It assumes
 /// that patches next to each other in the order are mostly seen together: a run of values begins

@@ -38,7 +38,7 @@ std::vector<Stretch> stretchesOf(const RowOwners& owners, std::size_t first, std
 /// and so on.
 class ChunkedSums {
  public:
-  ChunkedSums(Processes& processes, const ExchangeMatrix& own, const RowOwners& owners,
+  ChunkedSums(Processes& processes, const SymmetricMatrix& own, const RowOwners& owners,
               const TrianglePass& pass)
       : processes_(processes), own_(own), ones_(own.size() + kOverrun, 1.0) {
     for (std::size_t c = 0; c + 1 < pass.starts().size(); ++c) {
@@ -111,7 +111,7 @@ class ChunkedSums {
   }
 
   Processes& processes_;
-  const ExchangeMatrix& own_;
+  const SymmetricMatrix& own_;
   std::vector<double> ones_;
   std::vector<Chunk> chunks_;
   std::size_t steps_ = 0;
@@ -123,7 +123,8 @@ std::vector<double> orderedRowSums(Processes& processes, const ExchangeMatrix& o
                                    const RowOwners& owners, const WhileWaiting& waiting) {
   const std::size_t n = own.size();
   const bool first_process = processes.rank() == 0;
-  if (!own.isSymmetric()) {  // a row is one process's: the others add 0
+  const auto* const triangle = dynamic_cast<const SymmetricMatrix*>(&own);
+  if (triangle == nullptr) {  // a row is one process's: the others add 0
     std::vector<double> sums = own.rowSums();
     processes.sum(sums, waiting);
     return first_process ? sums : std::vector<double>();
@@ -131,8 +132,8 @@ std::vector<double> orderedRowSums(Processes& processes, const ExchangeMatrix& o
   const TrianglePass pass(n, kSums, [&](std::size_t k) { return owners.work[k]; });
   std::vector<double> gathered(n, 0.0);
   std::vector<double> scattered(first_process ? n : 0, 0.0);
-  for (std::size_t k = 0; k < n; ++k) gathered[k] = own.diagonal(k);
-  ChunkedSums(processes, own, owners, pass).run(gathered, scattered, waiting);
+  for (std::size_t k = 0; k < n; ++k) gathered[k] = triangle->diagonal(k);
+  ChunkedSums(processes, *triangle, owners, pass).run(gathered, scattered, waiting);
   processes.sum(gathered, waiting);
   if (!first_process) return {};
   std::vector<double> sums(n);

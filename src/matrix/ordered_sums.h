@@ -7,8 +7,8 @@
 
 namespace radiosity {
 
-/// All processes call this. Process 0 gets the sums, all others an empty vector. In the symmetric
-/// form a row hands numbers on to later rows, and chunks of rows add them up (TrianglePass). The
+/// All processes call this. Process 0 gets the sums, all others an empty vector. In a symmetric
+/// matrix a row hands numbers on to later rows, and chunks of rows add them up (TrianglePass). The
 /// sums of a chunk pass through the processes in the order of its rows: N numbers wherever a row is
 /// in another process than the row before. Processes, and threads, work on different chunks at the
 /// same time.

@@ -68,7 +68,7 @@ class LabelledSets {
 
 }  // namespace
 
-double sumRow(const ExchangeMatrix& own, std::size_t k, std::size_t begin,
+double sumRow(const SymmetricMatrix& own, std::size_t k, std::size_t begin,
               std::span<const double> ones, std::span<double> scattered) {
   const double area = own.area()[own.order()[k]];
   const RowBlock row{.rows = {&own.upperRuns(k), 1}, .first = k + 1 - begin};
@@ -105,7 +105,8 @@ void transposedProduct(const ExchangeMatrix& own, std::span<const double> x, int
 
 void forOwnEntries(const ExchangeMatrix& own,
                    const std::function<void(std::size_t, std::size_t, double)>& visit) {
-  if (!own.isSymmetric()) {
+  const auto* const triangle = dynamic_cast<const SymmetricMatrix*>(&own);
+  if (triangle == nullptr) {
     own.forPanels([&](const RowPanel& rows) {
       for (std::size_t i = rows.first(); i < rows.last(); ++i) {
         rows.forRow(i, [&](Index j, double value) { visit(i, j, value); });
@@ -115,9 +116,9 @@ void forOwnEntries(const ExchangeMatrix& own,
   }
   const std::span<const Index> order = own.order();
   for (std::size_t k = 0; k < own.size(); ++k) {
-    if (own.diagonal(k) != 0) visit(order[k], order[k], own.diagonal(k));
+    if (triangle->diagonal(k) != 0) visit(order[k], order[k], triangle->diagonal(k));
     const double area = own.area()[order[k]];
-    forRuns(own.upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
+    forRuns(triangle->upperRuns(k), [&](std::size_t offset, const auto* values, std::size_t count) {
       for (std::size_t m = 0; m < count; ++m) {
         if (values[m] == 0) continue;
         const Index later = order[k + 1 + offset + m];
@@ -128,7 +129,7 @@ void forOwnEntries(const ExchangeMatrix& own,
   }
 }
 
-std::vector<Index> joinedBy(const ExchangeMatrix& own) {
+std::vector<Index> joinedBy(const SymmetricMatrix& own) {
   const std::size_t n = own.size();
   LabelledSets sets(n);
   for (std::size_t k = 0; k < n && sets.count() > 1; ++k) {
@@ -144,6 +145,16 @@ std::vector<Index> joinedBy(const ExchangeMatrix& own) {
     });
   }
   return sets.firsts();
+}
+
+ExchangeOperator::Rooms roomsOf(std::span<const Index> first, std::span<const Index> order) {
+  ExchangeOperator::Rooms rooms{std::vector<Index>(first.size()), 0};
+  std::vector<Index> number(first.size());
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k] == k) number[k] = Index(rooms.count++);
+    rooms.of_patch[order[k]] = number[first[k]];
+  }
+  return rooms;
 }
 
 }  // namespace radiosity

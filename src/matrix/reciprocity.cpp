@@ -39,13 +39,12 @@ double reciprocityResidual(const ExchangeMatrix& matrix) {
   return std::sqrt(std::accumulate(difference.begin(), difference.end(), 0.0) / scale);
 }
 
-ExchangeMatrix symmetrized(const ExchangeMatrix& matrix) {
-  if (matrix.isSymmetric()) return matrix;
+SymmetricMatrix symmetrized(const RowMatrix& matrix) {
   const std::span<const double> area = matrix.area();
   std::vector<Index> order(matrix.size());
   std::iota(order.begin(), order.end(), Index(0));
-  auto merged = ExchangeMatrix::symmetric({area.begin(), area.end()}, std::move(order),
-                                          matrix.precision(), matrix.scratch());
+  SymmetricMatrix merged({area.begin(), area.end()}, std::move(order), matrix.precision(),
+                         matrix.scratch());
   forBothEstimates(matrix, [&](std::size_t i, auto row, auto column) {
     std::vector<double> factors(row.size() - i, 0.0);
     for (std::size_t j = i; j < row.size(); ++j) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "matrix/run_row.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace radiosity {
 
@@ -15,11 +16,12 @@ constexpr double kEven = 0.01;
 
 RowOwners findOwners(Processes& processes, const ExchangeMatrix& own, const WhileWaiting& waiting) {
   RowOwners owners;
-  if (!own.isSymmetric()) return owners;
+  const auto* const triangle = dynamic_cast<const SymmetricMatrix*>(&own);
+  if (triangle == nullptr) return owners;
   const std::size_t n = own.size();
   std::vector<double> work(2 * n, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
-    work[k] = double(workOf(own.upperRuns(k)));
+    work[k] = double(workOf(triangle->upperRuns(k)));
     if (work[k] > 0) work[n + k] = processes.rank() + 1;
   }
   processes.sum(work, waiting);

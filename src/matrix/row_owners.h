@@ -9,8 +9,8 @@
 
 namespace radiosity {
 
-/// Symmetric form, by position: the work of a walk along each row and the process that has it.
-/// Empty in the row form.
+/// Of a symmetric matrix, by position: the work of a walk along each row and the process that has
+/// it. Else empty.
 struct RowOwners {
   static constexpr int kNobody = -1;
   std::vector<std::size_t> work;

@@ -72,33 +72,32 @@ RowsPart partFrom(std::span<const std::byte> bytes) {
   return part;
 }
 
-void mergeParts(std::span<const RowsPart> parts, std::size_t n, std::vector<std::size_t>& starts,
-                std::vector<Index>& columns, std::vector<double>& values) {
-  const std::size_t rows = parts.empty() ? 0 : parts.front().counts.size();
-  starts.assign(rows + 1, 0);
-  std::vector<std::size_t> from(parts.size() * rows);  // the first entry of a row in each part
+void mergeParts(std::span<const RowsPart> parts, std::size_t n, CompressedRows& rows) {
+  const std::size_t count = parts.empty() ? 0 : parts.front().counts.size();
+  rows.starts.assign(count + 1, 0);
+  std::vector<std::size_t> from(parts.size() * count);  // the first entry of a row in each part
   for (std::size_t p = 0; p < parts.size(); ++p) {
     std::size_t before = 0;
-    for (std::size_t row = 0; row < rows; ++row) {
-      from[p * rows + row] = std::exchange(before, before + parts[p].counts[row]);
-      starts[row + 1] += parts[p].counts[row];
+    for (std::size_t row = 0; row < count; ++row) {
+      from[p * count + row] = std::exchange(before, before + parts[p].counts[row]);
+      rows.starts[row + 1] += parts[p].counts[row];
     }
   }
-  for (std::size_t row = 0; row < rows; ++row) starts[row + 1] += starts[row];
-  makeRoom(columns, starts.back());
-  makeRoom(values, starts.back());
+  for (std::size_t row = 0; row < count; ++row) rows.starts[row + 1] += rows.starts[row];
+  makeRoom(rows.columns, rows.starts.back());
+  makeRoom(rows.values, rows.starts.back());
   tbb::enumerable_thread_specific<EntrySorter> sorters;
-  parallelFor(rows, kRowsAtOnce, [&](std::size_t row) {
-    std::size_t at = starts[row];
+  parallelFor(count, kRowsAtOnce, [&](std::size_t row) {
+    std::size_t at = rows.starts[row];
     for (std::size_t p = 0; p < parts.size(); ++p) {
-      const std::size_t count = parts[p].counts[row];
-      std::copy_n(&parts[p].columns[from[p * rows + row]], count, &columns[at]);
-      std::copy_n(&parts[p].values[from[p * rows + row]], count, &values[at]);
-      at += count;
+      const std::size_t entries = parts[p].counts[row];
+      std::copy_n(&parts[p].columns[from[p * count + row]], entries, &rows.columns[at]);
+      std::copy_n(&parts[p].values[from[p * count + row]], entries, &rows.values[at]);
+      at += entries;
     }
-    const std::size_t count = at - starts[row];
-    sorters.local().sort(std::span(columns).subspan(starts[row], count),
-                         std::span(values).subspan(starts[row], count), n);
+    const std::size_t entries = at - rows.starts[row];
+    sorters.local().sort(std::span(rows.columns).subspan(rows.starts[row], entries),
+                         std::span(rows.values).subspan(rows.starts[row], entries), n);
   });
 }
 

@@ -33,8 +33,7 @@ std::vector<std::byte> bytesOf(const RowsPart& part);
 RowsPart partFrom(std::span<const std::byte> bytes);
 
 /// Puts the entries that the parts hold of each row one after the other, sorted. `n`: columns of
-/// the matrix. Columns and values can be longer than the rows.
-void mergeParts(std::span<const RowsPart> parts, std::size_t n, std::vector<std::size_t>& starts,
-                std::vector<Index>& columns, std::vector<double>& values);
+/// the matrix.
+void mergeParts(std::span<const RowsPart> parts, std::size_t n, CompressedRows& rows);
 
 }  // namespace radiosity

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/exchange_operator.h"
 
 namespace radiosity {
 

@@ -17,19 +17,17 @@ namespace radiosity {
 
 namespace {
 
-constexpr std::size_t kRowGrain = 64;
-
 enum class Request : std::uint32_t {
   product,
   row_sums,
   row_entries,
-  sizes,
+  bytes,
   panel,
   deal,
   deal_round,
   deal_end,
   columns,
-  joined,
+  rooms,
   solve,
   forget
 };
@@ -41,26 +39,15 @@ struct Order {
   std::uint64_t last = 0;
 };
 
-// Integers, which sums of doubles keep exactly.
-
+/// Integers, which sums of doubles keep exactly.
 std::vector<double> rowEntriesOf(const ExchangeMatrix& own) {
   const std::vector<Index> entries = own.rowEntries();
   return {entries.begin(), entries.end()};
 }
 
-/// Bytes and dense rows.
-std::vector<double> sizesOf(const ExchangeMatrix& own) {
-  return {double(own.bytes()), double(own.denseRows())};
-}
-
-/// `dense`: of zeros.
-void fillColumns(const ExchangeMatrix& own, std::size_t first, std::size_t last,
-                 std::span<double> dense) {
-  const std::size_t n = own.size();
-  const RowPanel rows(own, 0, n);
-  parallelFor(n, kRowGrain, [&](std::size_t i) {
-    rows.forRow(i, first, last, [&](Index j, double value) { dense[(j - first) * n + i] = value; });
-  });
+/// By position: the first position of the component that these rows join it to.
+std::vector<Index> joinedByOwn(const ExchangeMatrix& own) {
+  return joinedBy(dynamic_cast<const SymmetricMatrix&>(own));
 }
 
 /// The part of a problem that process 0 sends to all, joined with the parts of this process.
@@ -119,11 +106,14 @@ class SharedProblem {
 
 }  // namespace
 
-SharedRows::SharedRows(Processes& processes, ExchangeMatrix own, WhileWaiting waiting)
-    : processes_(processes),
+SharedRows::SharedRows(Processes& processes, std::shared_ptr<const ExchangeMatrix> own,
+                       WhileWaiting waiting)
+    : ExchangeMatrix({own->area().begin(), own->area().end()}, own->isSymmetric(),
+                     {own->order().begin(), own->order().end()}, own->precision()),
+      processes_(processes),
       own_(std::move(own)),
       waiting_(std::move(waiting)),
-      owners_(findOwners(processes_, own_, waiting_)) {}
+      owners_(findOwners(processes_, *own_, waiting_)) {}
 
 SharedRows::~SharedRows() {
   if (processes_.halfDone()) return;
@@ -131,17 +121,17 @@ SharedRows::~SharedRows() {
   processes_.broadcastValue(order);
 }
 
-void SharedRows::product(std::span<const double> x, int bands, std::span<double> y,
-                         std::span<const std::uint8_t> wanted) const {
+void SharedRows::multiply(std::span<const double> x, int bands, std::span<double> y,
+                          std::span<const std::uint8_t> wanted) const {
   const SharedStep step(processes_);
   Order order{.request = Request::product, .bands = bands};
   processes_.broadcastValue(order, waiting_);
   std::vector<double> sums(x.begin(), x.end());
   processes_.broadcast(std::as_writable_bytes(std::span(sums)), waiting_);
-  own_.product(x, bands, sums);
+  own_->product(x, bands, sums);
   processes_.sum(sums, waiting_);
   const auto width = std::size_t(bands);
-  for (std::size_t i = 0; i < own_.size(); ++i) {
+  for (std::size_t i = 0; i < size(); ++i) {
     if (!wanted.empty() && wanted[i] == 0) continue;
     std::copy_n(&sums[i * width], width, &y[i * width]);
   }
@@ -151,37 +141,41 @@ std::vector<double> SharedRows::rowSums() const {
   const SharedStep step(processes_);
   Order order{.request = Request::row_sums};
   processes_.broadcastValue(order, waiting_);
-  return orderedRowSums(processes_, own_, owners_, waiting_);
+  return orderedRowSums(processes_, *own_, owners_, waiting_);
 }
 
 std::vector<Index> SharedRows::rowEntries() const {
   const SharedStep step(processes_);
   Order order{.request = Request::row_entries};
   processes_.broadcastValue(order, waiting_);
-  std::vector<double> sums = rowEntriesOf(own_);
+  std::vector<double> sums = rowEntriesOf(*own_);
   processes_.sum(sums, waiting_);
   return {sums.begin(), sums.end()};
 }
 
-SharedRows::Sizes SharedRows::sizes() const {
+std::size_t SharedRows::bytes() const {
   const SharedStep step(processes_);
-  Order order{.request = Request::sizes};
+  Order order{.request = Request::bytes};
   processes_.broadcastValue(order, waiting_);
-  std::vector<double> sums = sizesOf(own_);
-  processes_.sum(sums, waiting_);
-  return {std::size_t(sums[0]), std::size_t(sums[1])};
+  auto sum = double(own_->bytes());
+  processes_.sum({&sum, 1}, waiting_);
+  return std::size_t(sum);
 }
 
-void SharedRows::panel(std::size_t first, std::size_t last, std::vector<std::size_t>& starts,
-                       std::vector<Index>& columns, std::vector<double>& values) const {
+std::size_t SharedRows::panelEntries() const {
+  return panelBytes(bytes() / std::size_t(processes())) / RowPanel::kEntryBytes;
+}
+
+void SharedRows::readRows(std::size_t first, std::size_t last, std::span<const Index> /*entries*/,
+                          CompressedRows& rows) const {
   const SharedStep step(processes_);
   Order order{.request = Request::panel, .first = first, .last = last};
   processes_.broadcastValue(order, waiting_);
-  std::vector<RowsPart> parts{partOf(own_, {first, last})};
+  std::vector<RowsPart> parts{partOf(*own_, {first, last})};
   for (int p = 1; p < processes_.size(); ++p) {
     parts.push_back(partFrom(processes_.receive(p, waiting_).bytes));
   }
-  mergeParts(parts, own_.size(), starts, columns, values);
+  mergeParts(parts, size(), rows);
 }
 
 void SharedRows::deal(DealtBlocks blocks, const MakeTaker& make_taker, Progress& progress) const {
@@ -192,7 +186,7 @@ void SharedRows::deal(DealtBlocks blocks, const MakeTaker& make_taker, Progress&
     Order order{.request = Request::deal};
     processes_.broadcastValue(order, waiting_);
     blocks.send(processes_, waiting_);
-    dealing.emplace(processes_, own_, std::move(blocks), make_taker);
+    dealing.emplace(processes_, *own_, std::move(blocks), make_taker);
     rounds = dealing->rounds();
   }
   for (std::size_t round = 0; round <= rounds; ++round) {
@@ -210,20 +204,21 @@ void SharedRows::deal(DealtBlocks blocks, const MakeTaker& make_taker, Progress&
   }
 }
 
-void SharedRows::columns(std::size_t first, std::size_t last, std::span<double> dense) const {
+void SharedRows::columns(std::size_t first, std::size_t last, std::span<double> values) const {
   const SharedStep step(processes_);
   Order order{.request = Request::columns, .first = first, .last = last};
   processes_.broadcastValue(order, waiting_);
-  fillColumns(own_, first, last, dense);
-  processes_.sum(dense, waiting_);
+  own_->columns(first, last, values);
+  processes_.sum(values, waiting_);
 }
 
-std::vector<Index> SharedRows::joined() const {
+SharedRows::Rooms SharedRows::rooms() const {
+  if (!isSymmetric()) return ExchangeMatrix::rooms();
   const SharedStep step(processes_);
-  Order order{.request = Request::joined};
+  Order order{.request = Request::rooms};
   processes_.broadcastValue(order, waiting_);
-  UnionFind sets(own_.size());
-  std::vector<Index> first = joinedBy(own_);
+  UnionFind sets(size());
+  std::vector<Index> first = joinedByOwn(*own_);
   for (int p = 0;;) {
     for (std::size_t k = 0; k < first.size(); ++k) sets.unite(first[k], Index(k));
     if (++p == processes_.size()) break;
@@ -232,14 +227,14 @@ std::vector<Index> SharedRows::joined() const {
     first = bytes.getArray<Index>();
   }
   for (std::size_t k = 0; k < first.size(); ++k) first[k] = sets.find(Index(k));
-  return first;
+  return roomsOf(first, ExchangeMatrix::order());
 }
 
 KrylovOutcome SharedRows::solve(const KrylovProblem& problem, std::span<double> solution) const {
   const SharedStep step(processes_);
   Order order{.request = Request::solve};
   processes_.broadcastValue(order, waiting_);
-  const SharedProblem shared(processes_, own_, problem, waiting_);
+  const SharedProblem shared(processes_, *own_, problem, waiting_);
   return processes_.solve(shared.problem(), solution);
 }
 
@@ -265,8 +260,8 @@ void serveRows(Processes& processes, const ExchangeMatrix& own, const MakeTaker&
         values = rowEntriesOf(own);
         processes.sum(values);
         break;
-      case Request::sizes:
-        values = sizesOf(own);
+      case Request::bytes:
+        values.assign(1, double(own.bytes()));
         processes.sum(values);
         break;
       case Request::panel:
@@ -284,12 +279,12 @@ void serveRows(Processes& processes, const ExchangeMatrix& own, const MakeTaker&
         break;
       case Request::columns:
         values.assign((order.last - order.first) * own.size(), 0.0);
-        fillColumns(own, order.first, order.last, values);
+        own.columns(order.first, order.last, values);
         processes.sum(values);
         break;
-      case Request::joined: {
+      case Request::rooms: {
         ByteWriter bytes;
-        const std::vector<Index> first = joinedBy(own);
+        const std::vector<Index> first = joinedByOwn(own);
         bytes.putArray(std::span(first));
         processes.send(0, bytes.bytes());
         break;

@@ -1,5 +1,5 @@
-// Products of the symmetric form. With A_q F_qk = A_k F_kq each stored F_kq is used twice: row k
-// gathers F_kq x_q, and hands F_kq A_k x_k on to row q, which divides by its own area at the end.
+// Products. With A_q F_qk = A_k F_kq each stored F_kq is used twice: row k gathers F_kq x_q, and
+// hands F_kq A_k x_k on to row q, which divides by its own area at the end.
 #include <algorithm>
 
 #include "base/aligned_buffer.h"
@@ -7,7 +7,7 @@
 #include "matrix/run_row.h"
 #include "matrix/triangle_kernels.h"
 #include "matrix/triangle_pass.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace radiosity {
 
@@ -65,22 +65,24 @@ double perArea(double scattered, double area) { return area > 0 ? scattered / ar
 
 }  // namespace
 
-void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std::span<double> y,
-                                      std::span<const std::uint8_t> wanted) const {
+void SymmetricMatrix::multiply(std::span<const double> x, int bands, std::span<double> y,
+                               std::span<const std::uint8_t> wanted) const {
   const std::size_t n = size();
+  const std::span<const Index> order = this->order();
+  const std::span<const double> area = this->area();
   const auto width = std::size_t(bands);
   const TrianglePass pass(n, kSums, [&](std::size_t k) { return workOf(upper_[k]); });
   const TriangleKernels kernels = triangleKernels();
   for (int first = 0; first < bands; first += kBandsAtOnce) {
     Planes in(n, first, std::min(first + kBandsAtOnce, bands));
-    in.take(x, width, order_);
+    in.take(x, width, order);
     std::vector<double> gathered(n * in.bands);
     // Positions count from `begin`, the first of a range of rows.
     const auto block = [&](std::size_t k, std::size_t count, std::size_t begin, double* scattered,
                            std::size_t stride) {
       const RowBlock rows{.rows = {&upper_[k], count}, .first = k + 1 - begin};
-      for (const RunRow& row : rows.rows) touchRows(scratch_.memory.get(), bytesOf(row));
-      const auto patches = std::span(order_).subspan(k, count);
+      for (const RunRow& row : rows.rows) touchRows(scratch_.get(), bytesOf(row));
+      const auto patches = order.subspan(k, count);
       const bool gathers =
           std::ranges::any_of(patches, [&](Index patch) { return isWanted(wanted, patch); });
       for (std::size_t b = 0; b < in.bands; b += kMaxBands) {
@@ -93,7 +95,7 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
         double factor[kMaxRows * kMaxBands];
         double sums[kMaxRows * kMaxBands];
         for (std::size_t m = 0; m < count * some; ++m) {
-          factor[m] = in.at(b + m % some, k + m / some) * area_[patches[m / some]];
+          factor[m] = in.at(b + m % some, k + m / some) * area[patches[m / some]];
         }
         multiplyBlock(kernels, rows, operands, {factor, count * some}, gathers, sums);
         for (std::size_t m = 0; m < count * some; ++m) {
@@ -108,12 +110,12 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
       }
     };
     const auto finish = [&](std::size_t k, const double* scattered) {
-      const Index patch = order_[k];
+      const Index patch = order[k];
       if (!isWanted(wanted, patch)) return;
       for (std::size_t b = 0; b < in.bands; ++b) {
         const double own = diagonal_[k] * in.at(b, k);
         y[patch * width + in.first_band + b] =
-            gathered[k * in.bands + b] + own + perArea(scattered[b], area_[patch]);
+            gathered[k * in.bands + b] + own + perArea(scattered[b], area[patch]);
       }
     };
     pass.runRanges(in.bands, range, finish);
@@ -123,12 +125,12 @@ void ExchangeMatrix::symmetricProduct(std::span<const double> x, int bands, std:
 // Earlier patches scattered their part of row k's sum just after their update; the part of later
 // patches is gathered from values that are not updated yet. So a sweep, too, passes over the
 // triangle once.
-void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update& update,
-                                    std::span<const std::uint8_t> wanted) const {
+void SymmetricMatrix::sweep(std::span<double> x, int bands, const Update& update,
+                            std::span<const std::uint8_t> wanted) const {
   const std::size_t n = size();
   const auto width = std::size_t(bands);
   Planes now(n, 0, bands);
-  now.take(x, width, order_);
+  now.take(x, width, order());
   Planes scattered(n, 0, bands);
   const TriangleKernels kernels = triangleKernels();
   std::vector<double> sums(width);
@@ -146,8 +148,8 @@ void ExchangeMatrix::symmetricSweep(std::span<double> x, int bands, const Update
     }
   };
   for (std::size_t k = 0; k < n; ++k) {
-    const Index patch = order_[k];
-    const double area = area_[patch];
+    const Index patch = order()[k];
+    const double area = this->area()[patch];
     const RowBlock row{.rows = {&upperRuns(k), 1}, .first = k + 1};
     if (isWanted(wanted, patch)) {
       gather(row);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace radiosity {
 

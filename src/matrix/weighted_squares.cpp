@@ -31,18 +31,18 @@ double sumOfSquares(const Value* values, double area, const double* inverse, std
 
 double ofRows(const ExchangeMatrix& matrix) {
   std::vector<double> rows(matrix.size(), 0.0);
-  parallelFor(matrix.size(), kSquaresGrain, [&](std::size_t i) {
-    matrix.forRow(i, [&](Index, double value) { rows[i] += value * value; });
-    rows[i] *= matrix.area()[i];
+  matrix.forPanels([&](const RowPanel& panel) {
+    parallelFor(panel.last() - panel.first(), kSquaresGrain, [&](std::size_t k) {
+      const std::size_t i = panel.first() + k;
+      panel.forRow(i, [&](Index, double value) { rows[i] += value * value; });
+      rows[i] *= matrix.area()[i];
+    });
   });
   return std::accumulate(rows.begin(), rows.end(), 0.0);
 }
 
-}  // namespace
-
 // Both ends of a pair give A_k F_kq^2 + A_q F_qk^2 = A_k F_kq^2 (1 + A_k / A_q).
-double weightedSquares(const ExchangeMatrix& matrix) {
-  if (!matrix.isSymmetric()) return ofRows(matrix);
+double ofTriangle(const SymmetricMatrix& matrix) {
   const std::size_t n = matrix.size();
   std::vector<double> area(n);
   std::vector<double> inverse(n);
@@ -60,6 +60,13 @@ double weightedSquares(const ExchangeMatrix& matrix) {
     rows[k] *= area[k];
   });
   return std::accumulate(rows.begin(), rows.end(), 0.0);
+}
+
+}  // namespace
+
+double weightedSquares(const ExchangeMatrix& matrix) {
+  const auto* triangle = dynamic_cast<const SymmetricMatrix*>(&matrix);
+  return triangle != nullptr ? ofTriangle(*triangle) : ofRows(matrix);
 }
 
 }  // namespace radiosity

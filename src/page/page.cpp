@@ -80,7 +80,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   const Scene& scene = pipeline.scene();
   const PatchMesh& mesh = pipeline.mesh().mesh;
   requirePageFits(scene.file, mesh);
-  const ExchangeMatrix& matrix = pipeline.matrix();
+  const ExchangeMatrix& matrix = pairsOf(pipeline.matrix());
   requireOneEstimate(scene.file, matrix);
   const Solution& solution = pipeline.solution();
   const FormFactors& factors = pipeline.factors();

@@ -30,12 +30,6 @@ std::vector<double> ofPatches(const PatchMesh& mesh, std::span<const double> of_
   return values;
 }
 
-std::vector<double> rowOf(const ExchangeMatrix& matrix, std::size_t unknown) {
-  std::vector<double> row(matrix.size(), 0.0);
-  matrix.forRow(unknown, [&](Index j, double f) { row[j] = f; });
-  return row;
-}
-
 }  // namespace
 
 SurfaceLight Pipeline::solvedLight() {
@@ -93,11 +87,11 @@ ScalarField Pipeline::field(Quantity quantity, std::size_t patch) {
       return brightnessField("irradiance H", light.irradiance, light.bands);
     }
     case Quantity::form_factor: {
-      const ExchangeMatrix& factors = matrix();
+      const ExchangeOperator& factors = matrix();
       const PatchMesh& patches = made(results_.mesh).mesh;
       const char* between =
           patches.clusters ? "form factor from cluster of patch" : "form factor from patch";
-      return {ofPatches(patches, rowOf(factors, patches.unknownOf(patch))),
+      return {ofPatches(patches, factors.row(patches.unknownOf(patch))),
               {fmt::format("{} {}", between, patch), ""}};
     }
     case Quantity::row_sum:

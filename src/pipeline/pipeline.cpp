@@ -209,13 +209,13 @@ void Pipeline::shareStoredMatrix() {
   const SharedStep step(*processes_);
   std::vector<char> path(source_.begin(), source_.end());
   processes_->broadcastArray(path);
-  ExchangeMatrix own = readMatrixPart(source_, {0, std::size_t(processes_->size())});
-  made(results_.factors).matrix = ExchangeMatrix::shared(
-      std::make_shared<SharedRows>(*processes_, std::move(own), [this] { progress_.check(); }));
+  made(results_.factors).matrix = std::make_shared<SharedRows>(
+      *processes_, readMatrixPart(source_, {0, std::size_t(processes_->size())}),
+      [this] { progress_.check(); });
 }
 
 /// Computes this process's share of the form factors.
-ExchangeMatrix Pipeline::shareRows(Processes& processes) {
+std::shared_ptr<const ExchangeMatrix> Pipeline::shareRows(Processes& processes) {
   FirstJournal first;
   first.broadcast(processes);
   const std::unique_ptr<JournalFile> file = first.open(processes.rank());
@@ -230,19 +230,17 @@ void Pipeline::serve(Processes& processes, SharedTask task) {
     return;
   }
   if (task == SharedTask::form_factors) {
-    serveRows(processes, shareRows(processes), makeMatrixBlockWriter);
+    serveRows(processes, *shareRows(processes), makeMatrixBlockWriter);
     return;
   }
   std::vector<char> path;
   processes.broadcastArray(path);
   const MatrixPart part{std::size_t(processes.rank()), std::size_t(processes.size())};
-  serveRows(processes, readMatrixPart({path.begin(), path.end()}, part), makeMatrixBlockWriter);
+  serveRows(processes, *readMatrixPart({path.begin(), path.end()}, part), makeMatrixBlockWriter);
 }
 
 void Pipeline::loadMatrix() {
-  if (!results_.factors || results_.factors->matrix.size() == results_.factors->fronts.size()) {
-    return;
-  }
+  if (!results_.factors || results_.factors->matrix) return;
   if (processes_ != nullptr) {
     shareStoredMatrix();
     return;

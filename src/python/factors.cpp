@@ -98,7 +98,7 @@ py::tuple rowsOf(const ExchangeMatrix& matrix, const py::object& report) {
 }
 
 py::tuple csrArrays(const FactorsHandle& handle, const py::object& report) {
-  const ExchangeMatrix& matrix = handle.factors.matrix;
+  const ExchangeMatrix& matrix = pairsOf(*handle.factors.matrix);
   return matrix.precision() == Precision::single_precision ? rowsOf<float>(matrix, report)
                                                            : rowsOf<double>(matrix, report);
 }
@@ -109,15 +109,15 @@ std::shared_ptr<FactorsHandle> fromCsr(const Array<double>& data, const Array<In
                                        const std::vector<std::string>& names, bool single) {
   auto handle = std::make_shared<FactorsHandle>();
   runLong(py::none(), [&](Progress& progress) {
-    ExchangeMatrix matrix(vectorOf(area),
-                          single ? Precision::single_precision : Precision::double_precision);
-    for (std::size_t i = 0; i < matrix.size(); ++i) {
+    const auto matrix = std::make_shared<RowMatrix>(
+        vectorOf(area), single ? Precision::single_precision : Precision::double_precision);
+    for (std::size_t i = 0; i < matrix->size(); ++i) {
       progress.check();
       const auto first = std::size_t(starts.data()[i]);
       const auto count = std::size_t(starts.data()[i + 1]) - first;
-      matrix.setRow(i, spanOf(indices).subspan(first, count), spanOf(data).subspan(first, count));
+      matrix->setRow(i, spanOf(indices).subspan(first, count), spanOf(data).subspan(first, count));
     }
-    handle->factors = factorsOfMatrix(std::move(matrix), vectorOf(sky), vectorOf(backs));
+    handle->factors = factorsOfMatrix(matrix, vectorOf(sky), vectorOf(backs));
   });
   handle->names = names;
   return handle;
@@ -195,7 +195,7 @@ void bindFactors(py::module_& module) {
   array("backs", &FormFactors::backs);
   array("error", &FormFactors::error);
   type.def_property_readonly("area", [](const py::object& self) {
-    const auto area = self.cast<const H&>().factors.matrix.area();
+    const auto area = self.cast<const H&>().factors.matrix->area();
     return view(area.data(), {py::ssize_t(area.size())}, self);
   });
   type.def_property_readonly(
@@ -204,7 +204,7 @@ void bindFactors(py::module_& module) {
   type.def_property_readonly(
       "method", [](const H& h) { return nameOf(kFactorsFromNames, h.factors.method); });
   type.def_property_readonly("symmetric",
-                             [](const H& h) { return h.factors.matrix.isSymmetric(); });
+                             [](const H& h) { return h.factors.matrix->isSymmetric(); });
   type.def_property_readonly("report", [](const H& h) { return dictOf(h.factors.report); });
   module.def("form_factors", &formFactors);
   module.def("unused_options", &unusedOptions);

@@ -23,7 +23,7 @@ constexpr int kShortStepBands = 3;
 
 bool hasShortSteps(const FactorsHandle& of, int bands) {
   const bool shared = of.mesh && of.mesh->result.mesh.clusters;
-  return !shared && bands <= kShortStepBands && of.factors.matrix.size() <= kShortStepRows;
+  return !shared && bands <= kShortStepBands && of.factors.matrix->size() <= kShortStepRows;
 }
 
 /// Reflectance and emission, (rows, bands), and the sky's radiance. A row is a patch of the mesh or
@@ -65,7 +65,7 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
 /// The names of the rows of a matrix from elsewhere, empty for a row without one.
 std::vector<std::string> rowNames(const FactorsHandle& factors) {
   std::vector<std::string> names = factors.names;
-  names.resize(factors.factors.matrix.size());
+  names.resize(factors.factors.matrix->size());
   return names;
 }
 
@@ -117,7 +117,7 @@ std::shared_ptr<HeatHandle> heatOfRows(std::shared_ptr<FactorsHandle> factors,
   auto handle = std::make_shared<HeatHandle>();
   handle->factors = std::move(factors);
   const FactorsHandle& of = *handle->factors;
-  const std::size_t rows = of.factors.matrix.size();
+  const std::size_t rows = of.factors.matrix->size();
   std::vector<HeatCondition> conditions(rows);
   std::vector<Index> of_row(rows);
   for (std::size_t i = 0; i < rows; ++i) {

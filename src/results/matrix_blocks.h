@@ -2,8 +2,13 @@
 // indices, indptr), shape), written and read block by block.
 #pragma once
 
+#include <memory>
+#include <span>
+#include <string>
+
 #include "matrix/dealt_blocks.h"
 #include "radiosity/exchange_matrix.h"
+#include "radiosity/scratch_memory.h"
 #include "results/h5_reader.h"
 #include "results/h5_writer.h"
 
@@ -31,11 +36,13 @@ struct MatrixPart {
 
 /// Reads the matrix, to the bit. `scratch`: the memory for it; null: ordinary memory. `part`: the
 /// rows to read; all others are empty.
-ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch,
-                          const MatrixPart& part = {});
+std::shared_ptr<const ExchangeMatrix> readMatrix(const h5::InputGroup& group,
+                                                 std::shared_ptr<ScratchMemory> scratch,
+                                                 const MatrixPart& part = {});
 
 /// Reads rows of the matrix in the results file `path`, which must have one. Errors: as
 /// readResults().
-ExchangeMatrix readMatrixPart(const std::string& path, const MatrixPart& part);
+std::shared_ptr<const ExchangeMatrix> readMatrixPart(const std::string& path,
+                                                     const MatrixPart& part);
 
 }  // namespace radiosity

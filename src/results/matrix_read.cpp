@@ -12,6 +12,8 @@
 #include "base/parallel.h"
 #include "matrix/row_parts.h"
 #include "matrix/sort_entries.h"
+#include "radiosity/row_matrix.h"
+#include "radiosity/symmetric_matrix.h"
 #include "results/matrix_blocks.h"
 
 namespace radiosity {
@@ -182,7 +184,7 @@ class BlockReader {
 };
 
 template <class T>
-void readByRows(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
+void readByRows(const h5::InputGroup& group, const StoredRows& rows, RowMatrix& matrix) {
   BlockReader<T>(group, rows, [&](std::size_t i, auto columns, auto values) {
     matrix.setRow(i, std::vector<Index>(columns.begin(), columns.end()),
                   std::vector<double>(values.begin(), values.end()));
@@ -221,7 +223,7 @@ void readTriangle(const h5::InputGroup& group, const StoredRows& rows, std::span
 }
 
 template <class T>
-void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, ExchangeMatrix& matrix) {
+void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, SymmetricMatrix& matrix) {
   const auto store = [&](std::size_t k, std::span<const Index> positions,
                          std::span<const double> factors) {
     try {
@@ -235,8 +237,9 @@ void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, Exchange
 
 }  // namespace
 
-ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMemory> scratch,
-                          const MatrixPart& part) {
+std::shared_ptr<const ExchangeMatrix> readMatrix(const h5::InputGroup& group,
+                                                 std::shared_ptr<ScratchMemory> scratch,
+                                                 const MatrixPart& part) {
   std::size_t n = 0;
   const h5::Handle area_set = group.open("area", Number::f64, 0, n);
   std::vector<double> area(n);
@@ -249,17 +252,19 @@ ExchangeMatrix readMatrix(const h5::InputGroup& group, std::shared_ptr<ScratchMe
   const bool single = rows.number == Number::f32;
   const Precision precision = single ? Precision::single_precision : Precision::double_precision;
   if (group.has("order")) {
-    auto matrix = ExchangeMatrix::symmetric(std::move(area), readOrder(group, n), precision,
-                                            std::move(scratch));
-    single ? readSymmetric<float>(group, rows, matrix) : readSymmetric<double>(group, rows, matrix);
+    const auto matrix = std::make_shared<SymmetricMatrix>(std::move(area), readOrder(group, n),
+                                                          precision, std::move(scratch));
+    single ? readSymmetric<float>(group, rows, *matrix)
+           : readSymmetric<double>(group, rows, *matrix);
     return matrix;
   }
-  ExchangeMatrix matrix(std::move(area), precision, std::move(scratch));
-  single ? readByRows<float>(group, rows, matrix) : readByRows<double>(group, rows, matrix);
+  const auto matrix = std::make_shared<RowMatrix>(std::move(area), precision, std::move(scratch));
+  single ? readByRows<float>(group, rows, *matrix) : readByRows<double>(group, rows, *matrix);
   return matrix;
 }
 
-ExchangeMatrix readMatrixPart(const std::string& path, const MatrixPart& part) {
+std::shared_ptr<const ExchangeMatrix> readMatrixPart(const std::string& path,
+                                                     const MatrixPart& part) {
   return h5::readSettled(path, [&] {
     const h5::InputFile file(path);
     file.requireOwnObjects();

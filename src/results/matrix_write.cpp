@@ -130,7 +130,7 @@ class MatrixBlockWriter : public BlockTaker {
  public:
   explicit MatrixBlockWriter(BlocksJob job) : job_(std::move(job)), file_(job_.file, job_.shown) {}
 
-  void take(std::size_t block, const WholeRows& rows) override {
+  void take(std::size_t block, const CompressedRows& rows) override {
     if (job_.number == Number::f32) {
       write<float>(job_.blocks[block], rows);
     } else {
@@ -141,7 +141,7 @@ class MatrixBlockWriter : public BlockTaker {
 
  private:
   template <class T>
-  void write(const BlockChunks& block, const WholeRows& rows) {
+  void write(const BlockChunks& block, const CompressedRows& rows) {
     ColumnWriter<std::int32_t> indices(job_.indices, file_, block.indices, block.first_entry);
     ColumnWriter<T> data(job_.data, file_, block.data, block.first_entry);
     addRows(rows, rows.first, rows.first + rows.starts.size() - 1, std::span(rows.starts), indices,
@@ -180,7 +180,7 @@ std::vector<RowRange> divide(std::span<const std::int64_t> starts, std::size_t b
 
 /// Writes the entries of rows that lie in several processes: each process puts blocks of whole rows
 /// together and writes their chunks.
-void writeSharedEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix,
+void writeSharedEntries(h5::OutputGroup& group, const SharedRows& matrix,
                         std::span<const std::int64_t> starts, Number number, Progress& progress) {
   const auto entries = std::size_t(starts.back());
   const h5::ChunkFile& file = group.chunks();
@@ -193,13 +193,13 @@ void writeSharedEntries(h5::OutputGroup& group, const ExchangeMatrix& matrix,
   // A process holds what it sends of a block, what it receives and the whole rows: all together
   // less than a panel of its share.
   constexpr std::size_t kHeldAtOnce = 4;
-  const auto processes = std::size_t(matrix.sharedRows()->processes());
+  const auto processes = std::size_t(matrix.processes());
   const std::size_t most = ExchangeMatrix::panelBytes(matrix.bytes() / processes) / kHeldAtOnce;
   const std::size_t rounds = entries * RowPanel::kEntryBytes / (most * processes) + 1;
   const std::size_t blocks = std::min(rounds * processes, job.indices.places.size());
   DealtBlocks dealt{divide(starts, blocks, job), {}};
   dealt.job = job.bytes();
-  matrix.sharedRows()->deal(std::move(dealt), makeMatrixBlockWriter, progress);
+  matrix.deal(std::move(dealt), makeMatrixBlockWriter, progress);
 }
 
 /// Writes shape, indptr, indices and data.
@@ -212,8 +212,9 @@ void writeRows(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& p
   progress.begin("writing form factors", matrix.size());
   const bool single = matrix.precision() == Precision::single_precision;
   const bool chunked = std::size_t(indptr.back()) * sizeof(std::int32_t) > h5::kCompactBytes;
-  if (matrix.sharedRows() != nullptr && chunked) {
-    writeSharedEntries(group, matrix, indptr, single ? Number::f32 : Number::f64, progress);
+  const auto* const shared = dynamic_cast<const SharedRows*>(&matrix);
+  if (shared != nullptr && chunked) {
+    writeSharedEntries(group, *shared, indptr, single ? Number::f32 : Number::f64, progress);
   } else if (single) {
     writeEntries<float>(group, matrix, indptr, progress);
   } else {

@@ -90,7 +90,7 @@ class StageWriter {
     for (const auto& [name, source] : meshLinks(results_)) {
       group.link(name, root_, kStage<Stage::mesh>.group + ("/" + std::string(source)));
     }
-    put_matrix_(group, factors_->matrix);
+    put_matrix_(group, pairsOf(*factors_->matrix));
   }
   /// With the materials, which may be there without a solution.
   void write(const StageOf<Solution>& stage) {
@@ -136,7 +136,9 @@ class StageWriter {
 };
 
 void requireMatrix(const std::string& path, const FormFactors* factors) {
-  if (factors != nullptr && factors->matrix.size() != factors->fronts.size()) {
+  const bool whole =
+      factors == nullptr || (factors->matrix && factors->matrix->size() == factors->fronts.size());
+  if (!whole) {
     throw RunError(
         fmt::format("{}: the form factors came without their matrix; read them with it", path));
   }
@@ -223,8 +225,8 @@ class StageReader {
     }
     if (!with_factors_) return;
     factors.matrix = readMatrix(group, std::move(scratch_));
-    if (factors.matrix.size() == factors.fronts.size()) return;
-    group.fail("area", fmt::format("has {} patches, fronts has {}", factors.matrix.size(),
+    if (factors.matrix->size() == factors.fronts.size()) return;
+    group.fail("area", fmt::format("has {} patches, fronts has {}", factors.matrix->size(),
                                    factors.fronts.size()));
   }
 

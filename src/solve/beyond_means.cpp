@@ -22,7 +22,7 @@ std::vector<double> balanced(const FormFactors& factors, std::span<const double>
   std::vector<double> out(more.begin(), more.end());
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = std::max(out[k], -irradiance[k]);
   if (seesOut(factors)) return out;
-  const std::span<const double> area = factors.matrix.area();
+  const std::span<const double> area = factors.matrix->area();
   for (int b = 0; b < bands; ++b) {
     const double made = powerOf(area, out, bands, b);
     const double all = made + powerOf(area, irradiance, bands, b);

@@ -1,6 +1,6 @@
 #include "solve/cluster_solve.h"
 
-#include "formfactor/rays/patch_irradiance.h"
+#include "formfactor/patch_irradiance.h"
 #include "mesh/clusters/cluster_means.h"
 #include "solve/beyond_means.h"
 #include "solve/energy.h"
@@ -57,7 +57,7 @@ std::vector<double> ClusterSolve::radiosityOf(std::span<const double> irradiance
 /// Corrects the account: light that reaches fronts in excess of the matrix does not reach the sky.
 void ClusterSolve::accountFor(std::span<const double> more, EnergyAccount& account) const {
   for (int b = 0; sees_out_ && b < materials_.bands; ++b) {
-    const double power = powerOf(factors_.matrix.area(), more, materials_.bands, b);
+    const double power = powerOf(factors_.matrix->area(), more, materials_.bands, b);
     account.to_sky[std::size_t(b)] -= power;
     account.imbalance[std::size_t(b)] += power;
   }

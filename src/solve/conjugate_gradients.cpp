@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "solve/iteration.h"
-#include "solve/matrix_rooms.h"
 
 namespace radiosity {
 
@@ -102,7 +101,7 @@ class ConjugateGradients {
   /// Finds the rooms, the image of their w under I - D S D, and the coarse matrix.
   void findRooms() {
     if (convergence_.sweeps() < 1 || convergence_.lastSweep() || !anyBright()) return;
-    rooms_ = matrixRooms(system_.matrix);
+    rooms_ = system_.matrix.rooms();
     image_ = apply(up_);
     convergence_.record(convergence_.history().back());
     coarse_ = roomDots(up_, image_);
@@ -234,9 +233,9 @@ class ConjugateGradients {
   BandArray z_;
   Fields fields_;
   Fields scratch_;
-  MatrixRooms rooms_;  // none: nothing is deflated
-  BandArray image_;    // (I - D S D) w
-  Sums coarse_;        // 1 over w . (I - D S D) w, by room and band; 0: left out
+  ExchangeOperator::Rooms rooms_;  // none: nothing is deflated
+  BandArray image_;                // (I - D S D) w
+  Sums coarse_;                    // 1 over w . (I - D S D) w, by room and band; 0: left out
   bool indefinite_ = false;
 };
 

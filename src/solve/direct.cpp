@@ -13,11 +13,13 @@ namespace {
 /// A negative B beyond this share of the largest B is not rounding.
 constexpr double kNegative = 1e-6;
 
+using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// I - rho F of one band, over the patches that reflect and are lit. All other patches have B = E.
 /// This leaves out white rooms without light, whose matrix has no inverse.
 class Factored {
  public:
-  Factored(const System& system, const Eigen::MatrixXd& f, Eigen::Index band) {
+  Factored(const System& system, const Eigen::Ref<const Dense>& f, Eigen::Index band) {
     const auto rho = asArray(system.reflectance, system.bands).col(band);
     const Eigen::Array<bool, Eigen::Dynamic, 1> lit =
         reached(f, asArray(system.emission, system.bands).col(band) != 0);
@@ -76,7 +78,7 @@ class Factored {
   Eigen::Index at(Eigen::Index k) const { return members_[std::size_t(k)]; }
 
   /// The patches of `from`, those that see one of them, and so on.
-  static Flags reached(const Eigen::MatrixXd& f, Flags from) {
+  static Flags reached(const Eigen::Ref<const Dense>& f, Flags from) {
     std::vector<Eigen::Index> next;
     for (Eigen::Index j = 0; j < from.size(); ++j) {
       if (from[j]) next.push_back(j);
@@ -100,17 +102,6 @@ class Factored {
   bool solvable_ = true;
 };
 
-Eigen::MatrixXd denseOf(const ExchangeMatrix& matrix) {
-  const auto n = Eigen::Index(matrix.size());
-  Eigen::MatrixXd f = Eigen::MatrixXd::Zero(n, n);
-  matrix.forPanels([&](const RowPanel& rows) {
-    for (std::size_t i = rows.first(); i < rows.last(); ++i) {
-      rows.forRow(i, [&](Index j, double value) { f(Eigen::Index(i), Eigen::Index(j)) = value; });
-    }
-  });
-  return f;
-}
-
 }  // namespace
 
 // Iterative refinement: the first step solves the system, later steps remove the rounding error.
@@ -128,7 +119,9 @@ Fields direct(const System& system, Convergence& convergence) {
     if (!factored.empty() && residual > 0.5 * last) convergence.giveUp(GaveUp::rounding);
     last = residual;
     if (factored.empty()) {
-      const Eigen::MatrixXd f = denseOf(system.matrix);
+      const std::vector<double> values = system.matrix.dense();
+      const auto n = Eigen::Index(system.matrix.size());
+      const Eigen::Map<const Dense> f(values.data(), n, n);
       for (Eigen::Index b = 0; b < system.bands; ++b) {
         convergence.check();
         factored.emplace_back(system, f, b);

@@ -19,7 +19,7 @@ void judgeBalance(const FormFactors& factors, std::span<const double> emission,
   if (summary.status != SolveStatus::converged) return;
   const double most = mostImbalance(factors);
   const EnergyAccount& energy = summary.energy;
-  const std::span<const double> area = factors.matrix.area();
+  const std::span<const double> area = factors.matrix->area();
   const double all_area = std::accumulate(area.begin(), area.end(), 0.0);
   const std::size_t bands = energy.emitted.size();
   for (std::size_t b = 0; b < bands; ++b) {
@@ -53,7 +53,7 @@ EnergyAccount energyAccount(const FormFactors& factors, std::span<const double> 
   const auto width = std::size_t(bands);
   const std::vector<double> zeros(width, 0.0);
   EnergyAccount account{zeros, zeros, zeros, zeros, zeros, zeros};
-  const std::span<const double> area = factors.matrix.area();
+  const std::span<const double> area = factors.matrix->area();
   for (std::size_t i = 0; i < area.size(); ++i) {
     for (std::size_t b = 0; b < width; ++b) {
       const std::size_t k = i * width + b;

@@ -9,7 +9,7 @@ namespace radiosity {
 
 namespace {
 
-std::vector<double> diagonalOf(const ExchangeMatrix& matrix) {
+std::vector<double> diagonalOf(const ExchangeOperator& matrix) {
   std::vector<double> diagonal(matrix.size());
   for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = matrix.at(i, i);
   return diagonal;

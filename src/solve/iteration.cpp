@@ -20,7 +20,7 @@ constexpr double kDivergedResidual = 1e6;
 
 }  // namespace
 
-System::System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e)
+System::System(const ExchangeOperator& f, int count, std::vector<double> rho, std::vector<double> e)
     : matrix(f), bands(count), reflectance(std::move(rho)), emission(std::move(e)) {
   nonnegative =
       std::all_of(emission.begin(), emission.end(), [](double value) { return value >= 0; });

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "radiosity/base.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/exchange_operator.h"
 
 namespace radiosity {
 
 /// B = E + rho F B for some bands at once. Every band carries light: max |E| > 0 in each. E may be
 /// negative: rays may correct the irradiance of a cluster downwards.
 struct System {
-  System(const ExchangeMatrix& f, int count, std::vector<double> rho, std::vector<double> e);
+  System(const ExchangeOperator& f, int count, std::vector<double> rho, std::vector<double> e);
 
-  const ExchangeMatrix& matrix;
+  const ExchangeOperator& matrix;
   int bands = 0;
   std::vector<double> reflectance;  ///< N * bands, row-major, 0 to 1
   std::vector<double> emission;     ///< N * bands, W/m^2
@@ -144,20 +144,20 @@ class Corrections {
   int stalls_ = 0;
 };
 
-/// D sqrt(A) and D A^-1/2, D = sqrt(rho), N * bands: with `up` F `down` the system of a matrix in
-/// the symmetric form is symmetric. 0 for patches without area.
+/// D sqrt(A) and D A^-1/2, D = sqrt(rho), N * bands: with `up` F `down` the system of a
+/// symmetric matrix is symmetric. 0 for patches without area.
 void symmetricScales(const System& system, std::span<double> up, std::span<double> down);
 
 // Each solver runs until `convergence` is finished. Its last residual is the true residual of the
 // fields returned.
 Fields jacobi(const System& system, Convergence& convergence);
 Fields gaussSeidel(const System& system, Convergence& convergence);
-/// The matrix must be in the symmetric form.
+/// The matrix must be symmetric.
 Fields conjugateGradients(const System& system, Convergence& convergence);
 Fields gmres(const System& system, Convergence& convergence);
 /// O(N^2) memory, O(N^3) time a band.
 Fields direct(const System& system, Convergence& convergence);
-/// The rows must lie in several processes (ExchangeMatrix::sharedRows()).
+/// The matrix must be SharedRows.
 Fields petscSolve(const System& system, Convergence& convergence);
 
 /// conjugateGradients() where the matrix is symmetric, else gmres().

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "matrix/shared_rows.h"
 #include "radiosity/spelling.h"
 #include "solve/certificate.h"
 
@@ -54,15 +55,19 @@ Fields run(Solver solver, const System& system, Convergence& convergence) {
   throw std::logic_error("a solver without an iteration");
 }
 
+bool isShared(const ExchangeOperator& matrix) {
+  return dynamic_cast<const SharedRows*>(&matrix) != nullptr;
+}
+
 struct Choice {
   Solver solver = Solver::automatic;
   std::string why;  ///< empty: it was asked for
 };
 
-Choice choose(Solver asked, const ExchangeMatrix& matrix) {
+Choice choose(Solver asked, const ExchangeOperator& matrix) {
   if (asked != Solver::automatic) return {asked, ""};
   if (matrix.size() <= kFewUnknowns) return {Solver::direct, "few unknowns"};
-  if (matrix.sharedRows() != nullptr) return {Solver::petsc, "the rows lie in several processes"};
+  if (isShared(matrix)) return {Solver::petsc, "the rows lie in several processes"};
   if (matrix.isSymmetric()) return {Solver::cg, "the matrix is symmetric"};
   return {Solver::gmres, "the matrix is not symmetric"};
 }
@@ -135,23 +140,22 @@ Fields solveSystem(const System& system, const SolveOptions& options, Progress& 
   return fields;
 }
 
-void requireSolver(Solver solver, const ExchangeMatrix& matrix) {
+void requireSolver(Solver solver, const ExchangeOperator& matrix) {
   if (solver == Solver::cg && !matrix.isSymmetric()) {
     throw InputError(fmt::format(
         "solver cg: conjugate gradients need a symmetric matrix, and rows of hemicubes are not "
         "(A_i F_ij = A_j F_ji does not hold); use gmres or auto, or merge the rows ({})",
         spelled("symmetrize")));
   }
-  const bool shared = matrix.sharedRows() != nullptr;
-  if (solver == Solver::petsc && !shared) {
+  if (solver == Solver::petsc && !isShared(matrix)) {
     throw InputError(
         "solver petsc: it runs on the processes of mpirun: mpirun -n 4 radiosity solve ...; "
         "without, use cg or auto");
   }
-  if (solver == Solver::gauss_seidel && shared) {
+  if (solver == Solver::gauss_seidel && !matrix.sweeps()) {
     throw InputError(
-        "solver gauss-seidel: a row after the other needs all rows in one process; under mpirun "
-        "use petsc, cg or auto");
+        "solver gauss-seidel: a row after the other needs all rows, as they are stored, in one "
+        "process; use cg or auto, or under mpirun petsc");
   }
   if (solver == Solver::direct && matrix.size() > kMostDirectUnknowns) {
     throw InputError(fmt::format(

@@ -1,15 +1,14 @@
 // PETSc's solvers, where the rows of the matrix lie in several processes.
 //
-// With H = F B and z = L H, B = E + R z is the solution if (I - L F R) z = L F E. In the symmetric
-// form L = D sqrt(A) and R = D A^-1/2, D = sqrt(rho), as in conjugate_gradients.cpp; else L = rho
-// and R = 1. PETSc stops by a norm of the residual of its recurrence. We then measure the true
+// With H = F B and z = L H, B = E + R z is the solution if (I - L F R) z = L F E. Where F is
+// symmetric L = D sqrt(A) and R = D A^-1/2, D = sqrt(rho), as in conjugate_gradients.cpp; else L =
+// rho and R = 1. PETSc stops by a norm of the residual of its recurrence. We then measure the true
 // residual of B; if it is too large, PETSc solves for a correction of z.
 #include <algorithm>
 #include <utility>
 
 #include "matrix/shared_rows.h"
 #include "solve/iteration.h"
-#include "solve/matrix_rooms.h"
 
 namespace radiosity {
 
@@ -69,7 +68,8 @@ class PetscSolve {
     problem.reduction = wanted < kMargin ? std::max(wanted, kLeastReduction) : kSettling;
     problem.most_products = std::max(1, convergence_.sweepsLeft() - 1);  // one is left to check
     std::vector<double> step(z_.size());
-    const KrylovOutcome outcome = system_.matrix.sharedRows()->solve(problem, step);
+    const KrylovOutcome outcome =
+        dynamic_cast<const SharedRows&>(system_.matrix).solve(problem, step);
     indefinite_ = outcome.indefinite;
     for (const double reduced : outcome.reductions) {
       convergence_.countRows(system_.matrix.size());
@@ -80,7 +80,7 @@ class PetscSolve {
   }
 
   void findRooms() {
-    rooms_ = matrixRooms(system_.matrix);
+    rooms_ = system_.matrix.rooms();
     const auto bands = std::size_t(system_.bands);
     for (std::size_t k = 0; k < z_.size(); ++k) {
       room_of_.push_back(unsigned(rooms_.of_patch[k / bands] * bands + k % bands));
@@ -93,7 +93,7 @@ class PetscSolve {
   std::vector<double> right_;
   std::vector<double> z_;
   Fields fields_;
-  MatrixRooms rooms_;
+  ExchangeOperator::Rooms rooms_;
   std::vector<unsigned> room_of_;  // by patch * bands + band: room * bands + band
   bool indefinite_ = false;
 };

@@ -28,7 +28,7 @@ std::vector<std::size_t> litPatches(const System& system, std::size_t band, cons
 
 }  // namespace
 
-void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>& marks) {
+void markAllThatSee(const ExchangeOperator& matrix, int bands, std::vector<double>& marks) {
   const auto width = std::size_t(bands);
   bool changed = true;
   const auto update = [&](std::size_t i, const double* seen) {
@@ -39,14 +39,14 @@ void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>
       changed = true;
     }
   };
-  std::vector<double> seen(matrix.sharedRows() != nullptr ? marks.size() : 0);
+  std::vector<double> seen(matrix.sweeps() ? 0 : marks.size());
   while (changed) {
     changed = false;
     if (seen.empty()) {
-      matrix.sweep(marks, bands, update);
+      matrix.sweep(marks, bands, update, {});
       continue;
     }
-    // The rows lie in several processes: a product updates all at once and takes a few steps more.
+    // A product updates all at once and takes a few steps more.
     matrix.product(marks, bands, seen);
     for (std::size_t i = 0; i < matrix.size(); ++i) update(i, &seen[i * width]);
   }

@@ -16,7 +16,7 @@ struct WhiteRoom {
 
 /// Marks every row that sees a marked row in the same band, directly or through others: row i does
 /// where sum_j F_ij mark_j > 0. `marks`: 0 or 1, N * bands.
-void markAllThatSee(const ExchangeMatrix& matrix, int bands, std::vector<double>& marks);
+void markAllThatSee(const ExchangeOperator& matrix, int bands, std::vector<double>& marks);
 
 /// True if light from this row goes to the sky or to backs. In a closed scene it is false, however
 /// far the computed row sums are from 1.

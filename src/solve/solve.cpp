@@ -23,7 +23,8 @@ namespace {
 void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
                 std::span<const double> emission, std::span<const double> sky, int bands,
                 const PatchNames& names) {
-  const std::size_t n = factors.matrix.size();
+  if (!factors.matrix) throw InputError("solve: the form factors came without their matrix");
+  const std::size_t n = factors.matrix->size();
   if (bands < 1) throw InputError(fmt::format("solve: {} bands; 1 or more are needed", bands));
   const auto check = [](std::string_view what, std::size_t size, std::size_t expected) {
     if (size == expected) return;
@@ -103,7 +104,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   options.validate();
   checkSizes(factors, reflectance, emission, sky, bands, names);
   checkMaterials(reflectance, emission, bands, names);
-  requireSolver(options.solver, factors.matrix);
+  requireSolver(options.solver, *factors.matrix);
 
   Solution solution;
   solution.bands = bands;
@@ -113,7 +114,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   for (std::size_t k = 0; k < more.size(); ++k) given[k] += more[k];
   const std::vector<double> source = sourceOf(reflectance, emission, given);
   const BandPlan plan(reflectance, source, bands);
-  const System system(factors.matrix, int(plan.solved().size()), plan.pick(reflectance),
+  const System system(*factors.matrix, int(plan.solved().size()), plan.pick(reflectance),
                       plan.pick(source));
   summary.skipped = {
       .black_patches = system.black, .dark_bands = plan.dark(), .equal_bands = plan.repeated()};

@@ -43,7 +43,7 @@ void noteSums(FormFactors& factors) {
 }
 
 void noteReciprocity(FormFactors& factors) {
-  const double residual = reciprocityResidual(factors.matrix);
+  const double residual = reciprocityResidual(pairsOf(*factors.matrix));
   factors.report.reciprocity_residual = residual;
   if (residual <= kMostUneven) return;
   factors.report.notes.push_back(
@@ -73,16 +73,13 @@ std::string firstLine(const std::string& path) {
 }
 
 MatrixFile readOfResults(const std::string& path) {
-  auto results = std::make_shared<Results>(readResults(path));
-  if (!results->mesh || !results->factors) {
+  const Results results = readResults(path);
+  if (!results.mesh || !results.factors) {
     throw InputError(path + ": holds no form factors; run radiosity factors on it");
   }
-  const FormFactors& factors = made(results->factors);
   MatrixFile file;
   file.path = path;
-  file.factors = factorsOfUnknowns(made(results->mesh).mesh, factors);
-  // The pointer keeps the results alive, since the matrix is a part of them.
-  file.factors.matrix = std::shared_ptr<const ExchangeMatrix>(results, &factors.matrix);
+  file.factors = factorsOfUnknowns(made(results.mesh).mesh, made(results.factors));
   return file;
 }
 
@@ -149,11 +146,11 @@ void writeMatrixMarket(const std::string& path, const NamedFactors& factors, Pro
       path, *factors.matrix, [&](std::size_t i) { return rowComment(factors, i); }, progress);
 }
 
-FormFactors factorsOfMatrix(ExchangeMatrix matrix, std::vector<double> sky,
+FormFactors factorsOfMatrix(std::shared_ptr<const ExchangeMatrix> matrix, std::vector<double> sky,
                             std::vector<double> backs, bool has_areas) {
   FormFactors factors;
+  factors.fronts = matrix->rowSums();
   factors.matrix = std::move(matrix);
-  factors.fronts = factors.matrix.rowSums();
   factors.sky = std::move(sky);
   factors.backs = std::move(backs);
   factors.report.closed = isClosed(factors.sky);
@@ -165,7 +162,7 @@ FormFactors factorsOfMatrix(ExchangeMatrix matrix, std::vector<double> sky,
 
 FormFactors factorsOfFile(const MatrixFile& file) {
   FormFactors factors =
-      factorsOfMatrix(*file.factors.matrix, file.factors.sky, file.factors.backs, file.has_areas);
+      factorsOfMatrix(file.factors.matrix, file.factors.sky, file.factors.backs, file.has_areas);
   factors.error = file.factors.error;
   factors.method = FormFactorMethod::file;
   return factors;

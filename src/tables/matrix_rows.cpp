@@ -21,8 +21,8 @@ std::vector<std::size_t> rowStarts(const std::vector<Entry>& entries, std::size_
 
 }  // namespace
 
-ExchangeMatrix matrixOfEntries(const std::string& path, std::vector<Entry> entries,
-                               std::vector<double> area) {
+RowMatrix matrixOfEntries(const std::string& path, std::vector<Entry> entries,
+                          std::vector<double> area) {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.row, a.column) < std::tie(b.row, b.column);
   });
@@ -33,7 +33,7 @@ ExchangeMatrix matrixOfEntries(const std::string& path, std::vector<Entry> entri
     throw InputError(fmt::format("{}: row {}, column {} is given twice; give each entry once", path,
                                  twice->row + 1, twice->column + 1));
   }
-  ExchangeMatrix matrix(std::move(area), Precision::double_precision);
+  RowMatrix matrix(std::move(area), Precision::double_precision);
   const std::vector<std::size_t> starts = rowStarts(entries, matrix.size());
   parallelFor(matrix.size(), 64, [&](std::size_t i) {
     std::vector<Index> columns;

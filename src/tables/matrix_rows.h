@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/row_matrix.h"
 
 namespace radiosity {
 
@@ -15,8 +15,8 @@ struct Entry {
   double value = 0;
 };
 
-/// Row form, double precision. Errors: InputError naming the file and an entry that is given twice.
-ExchangeMatrix matrixOfEntries(const std::string& path, std::vector<Entry> entries,
-                               std::vector<double> area);
+/// In double precision. Errors: InputError naming the file and an entry that is given twice.
+RowMatrix matrixOfEntries(const std::string& path, std::vector<Entry> entries,
+                          std::vector<double> area);
 
 }  // namespace radiosity

@@ -62,9 +62,9 @@ NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
   for (Index& row : result.row_of) row = groups.of_surface[row];
   result.members.assign(result.size(), 0);
   for (const Index row : result.row_of) ++result.members[row];
-  result.matrix = std::make_shared<const ExchangeMatrix>(aggregated(
-      factors.matrix, result.row_of, result.size(), progress, Precision::double_precision));
-  const std::span<const double> area = factors.matrix.area();
+  result.matrix = aggregated(*factors.matrix, result.row_of, result.size(), progress,
+                             Precision::double_precision);
+  const std::span<const double> area = factors.matrix->area();
   result.sky = meansOfRows(factors.sky, area, result);
   result.backs = meansOfRows(factors.backs, area, result);
   result.error = meansOfRows(factors.error, area, result);
@@ -79,8 +79,7 @@ NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors
   for (const Index surface : surfaceOfUnknowns(mesh)) {
     result.names.push_back(mesh.surface_names[surface]);
   }
-  result.matrix =
-      std::shared_ptr<const ExchangeMatrix>(std::shared_ptr<const void>(), &factors.matrix);
+  result.matrix = {factors.matrix, &pairsOf(*factors.matrix)};
   result.sky = factors.sky;
   result.backs = factors.backs;
   result.error = factors.error;

@@ -162,7 +162,7 @@ class Reader {
       }
     }
     area = chosenAreas(path_, given, std::move(area));
-    factors.matrix = std::make_shared<const ExchangeMatrix>(
+    factors.matrix = std::make_shared<const RowMatrix>(
         matrixOfEntries(path_, std::move(entries), std::move(area)));
     return file;
   }

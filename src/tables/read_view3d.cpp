@@ -6,6 +6,7 @@
 #include "base/finite.h"
 #include "base/input_file.h"
 #include "base/parse.h"
+#include "radiosity/row_matrix.h"
 #include "scene/text.h"
 #include "tables/matrix_readers.h"
 
@@ -93,7 +94,8 @@ MatrixFile readView3d(const std::string& path, std::span<const double> area) {
   const std::size_t n = header->rows;
   MatrixFile file;
   const auto at = [&](std::size_t k) { return numbers.begin() + std::ptrdiff_t(k); };
-  ExchangeMatrix matrix(chosenAreas(path, area, {at(0), at(n)}), Precision::double_precision);
+  const auto matrix = std::make_shared<RowMatrix>(chosenAreas(path, area, {at(0), at(n)}),
+                                                  Precision::double_precision);
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<Index> columns;
     std::vector<double> values;
@@ -103,9 +105,9 @@ MatrixFile readView3d(const std::string& path, std::span<const double> area) {
       columns.push_back(j);
       values.push_back(value);
     }
-    matrix.setRow(i, columns, values);
+    matrix->setRow(i, columns, values);
   }
-  file.factors.matrix = std::make_shared<const ExchangeMatrix>(std::move(matrix));
+  file.factors.matrix = matrix;
   file.factors.names.resize(n);
   file.emissivity.assign(at(n + n * n), numbers.end());
   file.has_accounts = false;

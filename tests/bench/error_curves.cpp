@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "lighting.h"
+#include "radiosity/row_matrix.h"
 #include "report.h"
 #include "verify.h"
 
@@ -17,8 +18,9 @@ namespace {
 constexpr double kSolveTolerance = 1e-8;
 
 FormFactors asFormFactors(const PatchMesh& mesh, const TruthRows& truth) {
+  const auto matrix = std::make_shared<RowMatrix>(mesh.area, Precision::double_precision);
   FormFactors factors;
-  factors.matrix = ExchangeMatrix(mesh.area, Precision::double_precision);
+  factors.matrix = matrix;
   factors.fronts.assign(mesh.size(), 0.0);
   factors.backs.assign(mesh.size(), 0.0);
   factors.sky.assign(mesh.size(), 0.0);
@@ -31,7 +33,7 @@ FormFactors asFormFactors(const PatchMesh& mesh, const TruthRows& truth) {
       values.push_back(truth.row[k][j]);
       factors.fronts[truth.index[k]] += truth.row[k][j];
     }
-    factors.matrix.setRow(truth.index[k], columns, values);
+    matrix->setRow(truth.index[k], columns, values);
   }
   return factors;
 }
@@ -92,8 +94,8 @@ Measured measure(const Method& method, const PatchMesh& mesh, const TruthRows& t
   setThreads(1);
   const FormFactors factors = timed(method, mesh, m);
   setThreads(0);
-  m.factors = matrixError(factors.matrix, truth);
-  m.bytes = factors.matrix.bytes();
+  m.factors = matrixError(pairsOf(*factors.matrix), truth);
+  m.bytes = factors.matrix->bytes();
   m.largest_row_error = largestRowError(factors);
   m.own = ownEstimate(factors, truth, m.factors);
   m.exact = factors.report.exact;

@@ -69,7 +69,7 @@ void benchFigures(const std::string& scene, const std::string& truth_folder) {
       const Stopwatch watch;
       const FormFactors factors = method.compute(mesh);
       const Seconds seconds = watch.elapsed();
-      const MatrixError error = matrixError(factors.matrix, truth);
+      const MatrixError error = matrixError(pairsOf(*factors.matrix), truth);
       const FigureScore score = scoreFigures(factors, truth, error.row);
       fmt::print(
           "  {:<20} {:>7} {:>5} {:>8.0e} | {:>8.3f} {:>8.1e} | {:>5} {:>6.1f}% {:>7.1f} {:>7.2f} | "

@@ -9,6 +9,7 @@
 #include "gather_report.h"
 #include "lighting.h"
 #include "methods.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/gather.h"
 
 namespace radiosity::bench {
@@ -43,7 +44,7 @@ double jacobiGap(const BenchScene& scene, const Lighting& lighting) {
   constexpr int kPasses = 3;
   const FormFactors factors = hemicube(kResolution, false).compute(scene.mesh);
   std::vector<double> b = lighting.emission();
-  for (int k = 0; k < kPasses; ++k) b = lighting.bounce(factors.matrix, b);
+  for (int k = 0; k < kPasses; ++k) b = lighting.bounce(pairsOf(*factors.matrix), b);
   const Gathered g = gathered(scene, lighting.materials(), GatherAt::patches, kPasses);
   double gap = 0;
   for (std::size_t k = 0; k < b.size(); ++k) gap = std::max(gap, std::abs(b[k] - g.radiosity[k]));
@@ -82,7 +83,7 @@ GatherCost matrixCost(const std::string& name, const Method& method, const Bench
     const Stopwatch watch;
     const FormFactors factors = method.compute(scene.mesh);
     b = lighting.solve(factors, kSolveTolerance);
-    cost.bytes = factors.matrix.bytes();
+    cost.bytes = factors.matrix->bytes();
     return watch.elapsed();
   });
   cost.error = relativeError(scene.mesh, b, reference, lighting.emission());

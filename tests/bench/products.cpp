@@ -14,7 +14,7 @@
 
 #include "base/parallel.h"
 #include "clocks.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace radiosity::bench {
 namespace {
@@ -24,11 +24,11 @@ constexpr int kColumns[] = {1, 3, 8, 16};
 constexpr int kRounds = 15;
 
 /// Half of the matrix that a room of so many patches, each of which sees all others, would have.
-ExchangeMatrix denseMatrix() {
+SymmetricMatrix denseMatrix() {
   std::vector<Index> order(kPatches);
   std::iota(order.begin(), order.end(), Index(0));
-  auto matrix = ExchangeMatrix::symmetric(std::vector<double>(kPatches, 1.0), order,
-                                          Precision::single_precision);
+  auto matrix =
+      SymmetricMatrix(std::vector<double>(kPatches, 1.0), order, Precision::single_precision);
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.5, 1.5);
   for (std::size_t k = 0; k < kPatches; ++k) {
@@ -47,7 +47,7 @@ std::vector<double> steps(int columns) {
 }
 
 /// Sums of rows, entry by entry. All areas are 1: F_ij = F_ji.
-std::vector<double> plainRowSums(const ExchangeMatrix& matrix) {
+std::vector<double> plainRowSums(const SymmetricMatrix& matrix) {
   std::vector<double> sums(kPatches);
   for (std::size_t k = 0; k < kPatches; ++k) {
     std::vector<double> row(kPatches - k);
@@ -60,7 +60,7 @@ std::vector<double> plainRowSums(const ExchangeMatrix& matrix) {
   return sums;
 }
 
-bool agrees(const ExchangeMatrix& matrix) {
+bool agrees(const SymmetricMatrix& matrix) {
   const std::vector<double> sums = plainRowSums(matrix);
   for (const int columns : kColumns) {
     std::vector<double> y(kPatches * std::size_t(columns));
@@ -109,7 +109,7 @@ class MemoryRates {
 };
 
 /// In turn, so that a busy machine slows all alike; one thread: processor time, else wall time.
-void timeProducts(const ExchangeMatrix& matrix, int threads) {
+void timeProducts(const SymmetricMatrix& matrix, int threads) {
   setThreads(threads);
   MemoryRates memory(matrix.bytes());
   std::vector<double> copies;
@@ -153,7 +153,7 @@ bool benchProducts() {
       "bytes, also over what copying (bytes read and written) and reading reach; the least of\n"
       "{} rounds.\n",
       kPatches, kRounds);
-  const ExchangeMatrix matrix = denseMatrix();
+  const SymmetricMatrix matrix = denseMatrix();
   if (!agrees(matrix)) {
     fmt::print("  NOT VERIFIED: nothing is timed\n");
     return false;

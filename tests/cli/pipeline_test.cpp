@@ -70,7 +70,7 @@ double surfaceToSurface(const Lit& lit, const std::string& from, const std::stri
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (mesh.surface_names[mesh.surface[i]] != from) continue;
     area += mesh.area[i];
-    lit.factors.matrix.forRow(i, [&](Index j, double f) {
+    pairsOf(*lit.factors.matrix).forRow(i, [&](Index j, double f) {
       if (mesh.surface_names[mesh.surface[j]] == to) exchange += mesh.area[i] * f;
     });
   }

@@ -3,15 +3,18 @@
 #include <radiosity/radiosity.h>
 
 #include <cstdio>
+#include <memory>
 #include <vector>
 
 using namespace radiosity;
 
 int main() try {
-  FormFactors factors;
-  factors.matrix = ExchangeMatrix({1.0, 1.0}, Precision::double_precision);
+  const auto matrix =
+      std::make_shared<RowMatrix>(std::vector<double>{1.0, 1.0}, Precision::double_precision);
   const std::vector<double> all{1.0};
-  for (Index i = 0; i < 2; ++i) factors.matrix.setRow(i, std::vector<Index>{1 - i}, all);
+  for (Index i = 0; i < 2; ++i) matrix->setRow(i, std::vector<Index>{1 - i}, all);
+  FormFactors factors;
+  factors.matrix = matrix;
   factors.fronts = {1, 1};
   factors.backs = factors.sky = {0, 0};
   std::vector<HeatCondition> conditions(2);

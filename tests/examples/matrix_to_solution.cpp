@@ -3,6 +3,7 @@
 #include <radiosity/radiosity.h>
 
 #include <cstdio>
+#include <memory>
 #include <vector>
 
 using namespace radiosity;
@@ -10,8 +11,8 @@ using namespace radiosity;
 int main() try {
   const double facing = 0.199824895698387;
   const double side = (1 - facing) / 4;
-  FormFactors factors;
-  factors.matrix = ExchangeMatrix(std::vector<double>(6, 1.0), Precision::double_precision);
+  const auto matrix =
+      std::make_shared<RowMatrix>(std::vector<double>(6, 1.0), Precision::double_precision);
   for (Index i = 0; i < 6; ++i) {
     std::vector<Index> columns;
     std::vector<double> values;
@@ -20,8 +21,10 @@ int main() try {
       columns.push_back(j);
       values.push_back(j == (i ^ 1U) ? facing : side);
     }
-    factors.matrix.setRow(i, columns, values);
+    matrix->setRow(i, columns, values);
   }
+  FormFactors factors;
+  factors.matrix = matrix;
   factors.fronts.assign(6, 1.0);
   factors.backs.assign(6, 0.0);
   factors.sky.assign(6, 0.0);

@@ -19,7 +19,7 @@ int main() try {
   const Scene scene = sceneOfTriangles(vertices, triangles, {&grey, 1});
   const PatchMesh mesh = meshScene(scene, as_given, quiet).mesh;
   const FormFactors factors = computeFormFactors(mesh, {}, quiet);
-  const ExchangeMatrix& f = factors.matrix;
+  const ExchangeOperator& f = *factors.matrix;
   const double lower_to_upper = 0.5 * (f.at(0, 2) + f.at(0, 3) + f.at(1, 2) + f.at(1, 3));
   std::printf("%.6f\n", lower_to_upper);  // Howell C-11: 0.199825
 } catch (const std::exception& error) {

@@ -74,7 +74,7 @@ TEST(ClosedRows, PlatesKeepTheSkyOfTheGapBetweenThem) {
 /// Whether all rows sum to 1 with backs and sky, none of them below 0. Values are in single
 /// precision, and rows have a few.
 void expectWholeRows(const FormFactors& f) {
-  const std::vector<double> sums = f.matrix.rowSums();
+  const std::vector<double> sums = f.matrix->rowSums();
   for (std::size_t i = 0; i < sums.size(); ++i) {
     EXPECT_GE(f.sky[i], 0) << i;
     EXPECT_NEAR(sums[i] + f.backs[i] + f.sky[i], 1, 2e-7) << i;
@@ -113,7 +113,7 @@ TEST(ClosedRows, MergedPairsLeaveTheLargerPlateItsSky) {
     const FormFactors f = test::computed(test::meshOf(scene, 1, true), options);
     expectWholeRows(f);
     // The gap takes about its share of the rim; no eye sees it.
-    EXPECT_NEAR(f.matrix.at(0, 1), 1, 1e-3);
+    EXPECT_NEAR(f.matrix->at(0, 1), 1, 1e-3);
     EXPECT_NEAR(f.sky[1], 1.0 / 3, 1e-3);
   }
 }

@@ -11,6 +11,7 @@
 #include "formfactor/computed_factors.h"
 #include "formfactor/exact/assembly/error_figure.h"
 #include "formfactor/exact/assembly/row_tasks.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 
@@ -35,7 +36,7 @@ void expectSame(const FormFactors& a, const FormFactors& b, std::vector<std::siz
       EXPECT_EQ(a.error[order[i]], b.error[i]);
     }
     for (std::size_t j = 0; j < order.size(); ++j) {
-      ASSERT_EQ(a.matrix.at(order[i], order[j]), b.matrix.at(i, j)) << i << ' ' << j;
+      ASSERT_EQ(a.matrix->at(order[i], order[j]), b.matrix->at(i, j)) << i << ' ' << j;
     }
   }
 }
@@ -48,7 +49,7 @@ double totalBetween(const PatchMesh& mesh, const FormFactors& f, const std::stri
     if (mesh.surface_names[mesh.surface[i]] != from) continue;
     area += mesh.area[i];
     for (std::size_t j = 0; j < mesh.size(); ++j) {
-      if (mesh.surface_names[mesh.surface[j]] == to) exchange += mesh.area[i] * f.matrix.at(i, j);
+      if (mesh.surface_names[mesh.surface[j]] == to) exchange += mesh.area[i] * f.matrix->at(i, j);
     }
   }
   return exchange / area;
@@ -77,8 +78,8 @@ TEST(ExactFactors, FacingPlatesHaveTenDigitsWithOnePatchEach) {
                                               {10, 0.00316205683875760}};
   for (const auto& [gap, value] : values) {
     const FormFactors f = test::computed(facingPlates(1, gap), test::exactly(1e-11));
-    EXPECT_EQ(f.matrix.precision(), Precision::double_precision);
-    EXPECT_NEAR(f.matrix.at(0, 1), value, 1e-10 * value) << gap;
+    EXPECT_EQ(pairsOf(*f.matrix).precision(), Precision::double_precision);
+    EXPECT_NEAR(f.matrix->at(0, 1), value, 1e-10 * value) << gap;
     EXPECT_NEAR(f.sky[0], 1 - value, 1e-10) << gap;
   }
 }
@@ -140,8 +141,8 @@ TEST(ExactFactors, ClosureIsReportedOrEnforced) {
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     EXPECT_NEAR(closed.fronts[i], 1, 3e-5);
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_NEAR(mesh.area[i] * closed.matrix.at(i, j), mesh.area[j] * closed.matrix.at(j, i),
-                  1e-7 * mesh.area[i] * closed.matrix.at(i, j));
+      EXPECT_NEAR(mesh.area[i] * closed.matrix->at(i, j), mesh.area[j] * closed.matrix->at(j, i),
+                  1e-7 * mesh.area[i] * closed.matrix->at(i, j));
     }
   }
 }
@@ -197,9 +198,9 @@ TEST(ExactFactors, AConcavePatchExchangesAsMuchAsItsSquares) {
   EXPECT_GT(a.report.exact.elements, whole.size());
   for (std::size_t j = 0; j < 9; ++j) {
     double of_squares = 0;
-    for (std::size_t i = 0; i < 3; ++i) of_squares += b.matrix.at(3 + j, i);
-    EXPECT_NEAR(a.matrix.at(1 + j, 0), of_squares, 1e-9);
-    EXPECT_NEAR(a.matrix.at(0, 1 + j) * 3, a.matrix.at(1 + j, 0) * whole.area[1 + j], 1e-12);
+    for (std::size_t i = 0; i < 3; ++i) of_squares += b.matrix->at(3 + j, i);
+    EXPECT_NEAR(a.matrix->at(1 + j, 0), of_squares, 1e-9);
+    EXPECT_NEAR(a.matrix->at(0, 1 + j) * 3, a.matrix->at(1 + j, 0) * whole.area[1 + j], 1e-12);
   }
 }
 
@@ -211,7 +212,7 @@ TEST(ExactFactors, CoplanarPatchesCostNothing) {
   EXPECT_EQ(e.elements, 10000u);
   EXPECT_EQ(e.unoccluded + e.occluded + e.hidden, 0u);
   EXPECT_EQ(e.contour + e.lambert + e.product + e.points + e.shaft_tests, 0u);
-  EXPECT_EQ(f.matrix.nonZeros(), 0u);
+  EXPECT_EQ(pairsOf(*f.matrix).nonZeros(), 0u);
 }
 
 TEST(ExactFactors, ConvexScenesRunNoVisibility) {
@@ -426,7 +427,7 @@ std::vector<double> exchangeOfSurfaces(const Scene& scene, std::size_t patches, 
   std::vector<double> sum(n * n, 0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     for (std::size_t j = 0; j < mesh.size(); ++j) {
-      sum[mesh.surface[i] * n + mesh.surface[j]] += mesh.area[i] * f.matrix.at(i, j);
+      sum[mesh.surface[i] * n + mesh.surface[j]] += mesh.area[i] * f.matrix->at(i, j);
     }
   }
   return sum;

@@ -10,6 +10,7 @@
 #include <random>
 #include <thread>
 
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 #include "visibility/elements/elements.h"
@@ -147,7 +148,8 @@ TEST(ExactBodies, AllValuesAreFinite) {
     const FormFactors f = computeFormFactors(mesh, options, silent);
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       ASSERT_TRUE(std::isfinite(f.error[i])) << seed << " " << i;
-      f.matrix.forRow(i, [&](Index, double value) { ASSERT_TRUE(value >= 0) << seed << " " << i; });
+      pairsOf(*f.matrix).forRow(
+          i, [&](Index, double value) { ASSERT_TRUE(value >= 0) << seed << " " << i; });
       // Rows of a room sum to 1 within their figures: errors of either sign in these many entries,
       // most of them occluded.
       EXPECT_NEAR(f.fronts[i] + f.backs[i], 1.0, 20 * f.error[i] + 1e-4) << seed << " " << i;

@@ -7,6 +7,7 @@
 
 #include "formfactor/computed_factors.h"
 #include "formfactor/exact_scenes.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 
@@ -32,7 +33,7 @@ FormFactors byHemicubes(const PatchMesh& mesh, const std::vector<Index>& exact_r
 /// The share of some patches in the view of patch i.
 double shareOf(const FormFactors& factors, std::size_t i, const std::vector<Index>& seen) {
   double sum = 0;
-  for (const Index e : seen) sum += factors.matrix.at(i, e);
+  for (const Index e : seen) sum += factors.matrix->at(i, e);
   return sum;
 }
 
@@ -40,7 +41,7 @@ double shareOf(const FormFactors& factors, std::size_t i, const std::vector<Inde
 /// patches that see a hundredth of the mean or more.
 double worstShare(const FormFactors& found, const FormFactors& truth,
                   const std::vector<Index>& seen) {
-  const std::size_t n = truth.matrix.size();
+  const std::size_t n = truth.matrix->size();
   double mean = 0;
   for (std::size_t i = 0; i < n; ++i) mean += shareOf(truth, i, seen) / double(n);
   double worst = 0;
@@ -71,7 +72,7 @@ TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
   for (const Index e : emitters) {
     double square = 0;
     for (std::size_t j = 0; j < mesh.size(); ++j) {
-      square += std::pow(both.matrix.at(e, j) - truth.matrix.at(e, j), 2);
+      square += std::pow(both.matrix->at(e, j) - truth.matrix->at(e, j), 2);
     }
     // The truth has a figure, too; single precision rounds to 6e-8.
     EXPECT_LE(std::sqrt(square), both.error[e] + truth.error[e] + 1e-7);
@@ -96,13 +97,13 @@ TEST_P(ExactRows, GiveDirectLightThatHemicubesMiss) {
     if (!(mesh.area[i] > 0)) continue;
     EXPECT_NEAR(both.fronts[i] + both.backs[i] + both.sky[i], 1, 1e-12);
     if (emits[i] != 0) continue;
-    EXPECT_NEAR(both.matrix.rowSums()[i], both.fronts[i], 1e-7);  // single precision
+    EXPECT_NEAR(both.matrix->rowSums()[i], both.fronts[i], 1e-7);  // single precision
     // All else that was seen keeps its proportions, backs and sky with the rest.
     const double rest_seen = 1 - shareOf(seen, i, emitters);
     const double rest_both = 1 - shareOf(both, i, emitters);
-    seen.matrix.forRow(i, [&](Index j, double value) {
+    pairsOf(*seen.matrix).forRow(i, [&](Index j, double value) {
       if (emits[j] == 0) {
-        EXPECT_NEAR(both.matrix.at(i, j) / value, rest_both / rest_seen, 1e-6) << i << " " << j;
+        EXPECT_NEAR(both.matrix->at(i, j) / value, rest_both / rest_seen, 1e-6) << i << " " << j;
       }
     });
     EXPECT_NEAR(both.sky[i] * rest_seen, seen.sky[i] * rest_both, 1e-7);
@@ -121,9 +122,9 @@ TEST_P(ExactRows, StayExactInAMergedMatrix) {
   options.symmetrize = true;
   const FormFactors merged = test::computed(mesh, options);
   for (const Index e : emitters) {
-    raw.matrix.forRow(e, [&](Index j, double value) {
+    pairsOf(*raw.matrix).forRow(e, [&](Index j, double value) {
       // Closed rows are scaled to their sum, columns are not: by 1e-3 at most, the rows' tolerance.
-      EXPECT_NEAR(merged.matrix.at(e, j) / value, 1, 1e-3) << e << " " << j;
+      EXPECT_NEAR(merged.matrix->at(e, j) / value, 1, 1e-3) << e << " " << j;
     });
   }
 }
@@ -145,8 +146,8 @@ TEST_P(ExactRows, KeepClosureAndReciprocity) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 300);
   const FormFactors f = byRays(mesh, emittingUnknowns(mesh, patchMaterials(scene, mesh)), 2e-2);
-  EXPECT_TRUE(f.matrix.isSymmetric());
-  const std::vector<double> sums = f.matrix.rowSums();
+  EXPECT_TRUE(f.matrix->isSymmetric());
+  const std::vector<double> sums = f.matrix->rowSums();
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (!(mesh.area[i] > 0)) continue;
     // What is left is sky; where closure has left less than nothing, sky is 0. Rows are closed to
@@ -183,12 +184,13 @@ TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
     std::vector<double> row(clusters.size(), 0.0);
     for (const Index i : clusters.patchesOf(w)) {
       area += mesh.area[i];
-      truth.matrix.forRow(
-          i, [&](Index j, double value) { row[clusters.of_patch[j]] += mesh.area[i] * value; });
+      pairsOf(*truth.matrix).forRow(i, [&](Index j, double value) {
+        row[clusters.of_patch[j]] += mesh.area[i] * value;
+      });
     }
     double square = 0;
     for (std::size_t l = 0; l < row.size(); ++l) {
-      square += std::pow(f.matrix.at(w, l) - row[l] / area, 2);
+      square += std::pow(f.matrix->at(w, l) - row[l] / area, 2);
     }
     // The truth is good to 1e-4 of the mean form factor a pair; patches are 3 a cluster.
     EXPECT_LT(std::sqrt(square), f.error[w] + 3e-4 / std::sqrt(double(mesh.size())));
@@ -196,7 +198,7 @@ TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
     double hemicube_square = 0;
     double norm = 0;
     for (std::size_t l = 0; l < row.size(); ++l) {
-      hemicube_square += std::pow(by_hemicubes.matrix.at(w, l) - row[l] / area, 2);
+      hemicube_square += std::pow(by_hemicubes.matrix->at(w, l) - row[l] / area, 2);
       norm += std::pow(row[l] / area, 2);
     }
     EXPECT_LT(std::sqrt(hemicube_square / norm), 1e-3);  // what exact is to hold in a row
@@ -231,7 +233,7 @@ TEST(ExactRowsOfARoom, HaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(one.error, all.error);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     for (std::size_t j = 0; j < mesh.size(); ++j) {
-      ASSERT_EQ(one.matrix.at(i, j), all.matrix.at(i, j));
+      ASSERT_EQ(one.matrix->at(i, j), all.matrix->at(i, j));
     }
   }
 }

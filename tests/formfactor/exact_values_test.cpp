@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "formfactor/computed_factors.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 #include "truth/closed_forms.h"
@@ -28,7 +29,7 @@ double surfaceToSurface(const PatchMesh& mesh, const FormFactors& factors, const
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (mesh.surface_names[mesh.surface[i]] != from) continue;
     area += mesh.area[i];
-    factors.matrix.forRow(i, [&](Index j, double f) {
+    pairsOf(*factors.matrix).forRow(i, [&](Index j, double f) {
       if (mesh.surface_names[mesh.surface[j]] == to) exchange += mesh.area[i] * f;
     });
   }
@@ -46,8 +47,8 @@ TEST(ExactValues, PlanarClosedFormsHoldToTenDigits) {
     const PatchMesh mesh = builder.build();
     const FormFactors f = test::exactInDouble(mesh, 1e-11);
     // Ten digits of the value; the last digit of the table's own is 1e-13.
-    EXPECT_NEAR(f.matrix.at(0, 1) / k.f, 1, 1e-10) << k.name;
-    EXPECT_NEAR(f.matrix.at(1, 0) * mesh.area[1], k.f * mesh.area[0], 1e-10 * k.f) << k.name;
+    EXPECT_NEAR(f.matrix->at(0, 1) / k.f, 1, 1e-10) << k.name;
+    EXPECT_NEAR(f.matrix->at(1, 0) * mesh.area[1], k.f * mesh.area[0], 1e-10 * k.f) << k.name;
     EXPECT_EQ(f.report.exact.shaft_tests, 0u) << k.name;
   }
 }
@@ -59,7 +60,7 @@ TEST(ExactValues, ACubeOfTrianglesHasKnownValues) {
                           0.0999124478491937};  // the last: half a face's, where diagonals cross
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     EXPECT_NEAR(f.fronts[i], 1, 1e-10);
-    f.matrix.forRow(i, [&](Index j, double value) {
+    pairsOf(*f.matrix).forRow(i, [&](Index j, double value) {
       double nearest = 1;
       for (const double k : known) nearest = std::min(nearest, std::abs(value / k - 1));
       EXPECT_LT(nearest, 1e-10) << i << " " << j << " " << value;
@@ -179,7 +180,7 @@ TEST(ExactValues, ASphereInACubeConvergesToSecondOrder) {
     EXPECT_NEAR(surfaceToSurface(mesh, f, "sphere", "cube"), 1, 1e-5) << sides;
     EXPECT_EQ(surfaceToSurface(mesh, f, "sphere", "sphere"), 0) << sides;
     double from_a_face = 0;
-    f.matrix.forRow(mesh.size() - 1, [&](Index j, double value) {
+    pairsOf(*f.matrix).forRow(mesh.size() - 1, [&](Index j, double value) {
       if (j < mesh.size() - 6) from_a_face += value;
     });
     values.push_back(from_a_face);
@@ -220,7 +221,7 @@ TEST(ExactValues, TheInsideOfASphereConvergesToSecondOrder) {
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       if (mesh.centroid[i].z < std::sqrt(0.5)) continue;
       cap += mesh.area[i];
-      f.matrix.forRow(i, [&](Index j, double value) {
+      pairsOf(*f.matrix).forRow(i, [&](Index j, double value) {
         if (mesh.centroid[j].z < 0) exchange += mesh.area[i] * value;
       });
     }
@@ -307,10 +308,10 @@ TEST(ExactValues, CoaxialCylindersConvergeToSecondOrder) {
 /// product with A_j is back within two roundings.
 void expectBounds(const PatchMesh& mesh, const FormFactors& f) {
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    f.matrix.forRow(i, [&](Index j, double value) {
+    pairsOf(*f.matrix).forRow(i, [&](Index j, double value) {
       EXPECT_GE(value, 0);
       const double exchange = mesh.area[i] * value;
-      EXPECT_NEAR(mesh.area[j] * f.matrix.at(j, i), exchange, 4e-16 * exchange);
+      EXPECT_NEAR(mesh.area[j] * f.matrix->at(j, i), exchange, 4e-16 * exchange);
       EXPECT_LE(exchange, std::min(mesh.area[i], mesh.area[j]) * (1 + 4e-16)) << i << " " << j;
     });
   }
@@ -326,7 +327,7 @@ TEST(ExactBounds, ObstructedIsNeverMoreThanUnobstructed) {
       expectBounds(with, f);
       for (std::size_t i = 0; i < without.size(); ++i) {
         for (std::size_t j = 0; j < without.size(); ++j) {
-          EXPECT_LE(f.matrix.at(i, j), free.matrix.at(i, j)) << k.name << " " << i << " " << j;
+          EXPECT_LE(f.matrix->at(i, j), free.matrix->at(i, j)) << k.name << " " << i << " " << j;
         }
       }
     }

@@ -261,7 +261,7 @@ TEST(Kernels, WholeRowsAgreeOnEveryInstructionSet) {
     EXPECT_EQ(f.report.simd_target, kernels.target);
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       for (std::size_t j = 0; j < mesh.size(); ++j) {
-        ASSERT_EQ(expected.matrix.at(i, j), f.matrix.at(i, j));
+        ASSERT_EQ(expected.matrix->at(i, j), f.matrix->at(i, j));
       }
     }
   });

@@ -27,8 +27,8 @@ double difference(const PatchMesh& mesh, const FormFactors& a, const FormFactors
   double all = 0;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     for (std::size_t j = 0; j < mesh.size(); ++j) {
-      const double truth = b.matrix.at(i, j);
-      off += mesh.area[i] * std::pow(a.matrix.at(i, j) - truth, 2);
+      const double truth = b.matrix->at(i, j);
+      off += mesh.area[i] * std::pow(a.matrix->at(i, j) - truth, 2);
       all += mesh.area[i] * truth * truth;
     }
   }
@@ -43,7 +43,7 @@ TEST(NearPairs, PlatesOfOnePatchHaveTheirClosedForm) {
     builder.grid("high", {0, 0, gap}, {0, 1, 0}, {1, 0, 0});
     const FormFactors f = computeNear(builder.build(), FormFactorMethod::hemicube, true);
     EXPECT_EQ(f.report.hemicube.near_pairs, 2u);
-    EXPECT_NEAR(f.matrix.at(0, 1), value, 1e-5 * value);
+    EXPECT_NEAR(f.matrix->at(0, 1), value, 1e-5 * value);
     EXPECT_NEAR(f.sky[0], 1 - value, 1e-5);
   }
 }
@@ -59,7 +59,7 @@ TEST(NearPairs, AWholeRoomGetsBetterAndStaysClosed) {
   EXPECT_EQ(corrected.report.hemicube.capped, 0u);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     EXPECT_NEAR(corrected.fronts[i], 1, 1e-12);
-    for (std::size_t j = 0; j < mesh.size(); ++j) EXPECT_GE(corrected.matrix.at(i, j), 0);
+    for (std::size_t j = 0; j < mesh.size(); ++j) EXPECT_GE(corrected.matrix->at(i, j), 0);
   }
 }
 

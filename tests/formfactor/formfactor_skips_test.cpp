@@ -177,7 +177,7 @@ TEST(HiddenBacks, PlatesWithoutThicknessShowTheirFronts) {
   Progress silent;
   const FormFactors f = computeFormFactors(builder.build(), options, silent);
   for (std::size_t i = 0; i < 32; ++i) EXPECT_EQ(f.backs[i], 0.0);
-  for (std::size_t i = 0; i < 16; ++i) EXPECT_GT(f.matrix.at(i, 33), 0.0);
+  for (std::size_t i = 0; i < 16; ++i) EXPECT_GT(f.matrix->at(i, 33), 0.0);
 }
 
 }  // namespace

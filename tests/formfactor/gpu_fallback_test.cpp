@@ -143,7 +143,7 @@ TEST(GpuFallback, TheProcessorDrawsTheRestOfALostDevice) {
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       for (std::size_t j = 0; j < mesh.size(); ++j) {
         // Whole numbers of 2^-62 are doubles' roundings below a weight of 1.
-        EXPECT_NEAR(seen.matrix.at(i, j), expected.matrix.at(i, j), 1e-15);
+        EXPECT_NEAR(seen.matrix->at(i, j), expected.matrix->at(i, j), 1e-15);
       }
     }
     const std::vector<Note>& notes = seen.report.notes;
@@ -207,7 +207,7 @@ TEST(GpuFallback, TheProcessorDrawsASceneThatTheDeviceCannotHold) {
     const FormFactors seen =
         hemicubeFactors(mesh, scene, {}, RowMemory(), smallHemicubes(), silent, nullptr, nullptr);
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-      EXPECT_EQ(seen.matrix.at(0, i), expected.matrix.at(0, i));
+      EXPECT_EQ(seen.matrix->at(0, i), expected.matrix->at(0, i));
     }
     const std::vector<Note>& notes = seen.report.notes;
     EXPECT_TRUE(has(notes, Severity::warning, "full: the device has no memory left; all "));

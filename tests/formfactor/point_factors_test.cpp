@@ -131,7 +131,7 @@ TEST(PointFactors, TheMeanOverAPatchIsItsExactRow) {
     double mean = 0;
     for (std::size_t k = 0; k < points.size(); ++k) mean += rows[k * mesh.size() + i];
     // The midpoint rule with kinks where shadows end: second order in 1 / 40.
-    EXPECT_NEAR(mean / double(points.size()), exact.matrix.at(from, i), 2e-5) << i;
+    EXPECT_NEAR(mean / double(points.size()), exact.matrix->at(from, i), 2e-5) << i;
   }
 }
 

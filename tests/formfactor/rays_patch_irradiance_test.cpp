@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "formfactor/rays/patch_irradiance.h"
+#include "formfactor/patch_irradiance.h"
 #include "formfactor/rays/seen_patches.h"
 #include "support/mesh_builder.h"
 

@@ -176,7 +176,7 @@ TEST(AimedRays, FindSmallThingsFarAway) {
       // The row of the smaller one: to a large one that is near, the other may be anywhere.
       const std::size_t small = o <= s ? 1 : 0;
       const double truth = exact / std::min(s * s, o * o);
-      const double factor = f.matrix.at(small, 1 - small);
+      const double factor = f.matrix->at(small, 1 - small);
       ++runs;
       outside += std::abs(factor - truth) > f.error[small] ? 1 : 0;
       EXPECT_NEAR(factor, truth, 4 * kTolerance * truth) << "seed " << seed;

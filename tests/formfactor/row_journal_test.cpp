@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 
@@ -80,9 +81,9 @@ void add(std::span<const double> values, Bits& bits) {
 /// All results but the seconds.
 Bits bitsOf(const FormFactors& factors) {
   Bits bits;
-  const std::size_t n = factors.matrix.size();
+  const std::size_t n = factors.matrix->size();
   for (std::size_t i = 0; i < n; ++i) {
-    factors.matrix.forRow(i, [&](Index column, double value) {
+    pairsOf(*factors.matrix).forRow(i, [&](Index column, double value) {
       bits.push_back(column);
       add({&value, 1}, bits);
     });

@@ -7,6 +7,7 @@
 
 #include "exact_scenes.h"
 #include "formfactor/computed_factors.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/scene.h"
 #include "support/scene_builder.h"
@@ -35,7 +36,7 @@ SampledScore score(const PatchMesh& mesh, const FormFactors& f, std::size_t rows
   for (std::size_t k = 0; k < rows; ++k) {
     const std::size_t i = (2 * k + 1) * mesh.size() / (2 * rows);
     std::vector<double> row(mesh.size(), 0.0);
-    f.matrix.forRow(i, [&](Index j, double value) { row[j] = value; });
+    pairsOf(*f.matrix).forRow(i, [&](Index j, double value) { row[j] = value; });
     const std::vector<double> true_row = truth.row(i).form_factors;
     double square = 0;
     for (std::size_t j = 0; j < mesh.size(); ++j) {
@@ -129,7 +130,7 @@ TEST(ExactAgainstTruth, ErrorFiguresCoverShadowsOfSlats) {
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       double square = 0;
       for (std::size_t j = 0; j < mesh.size(); ++j) {
-        const double off = f.matrix.at(i, j) - better.matrix.at(i, j);
+        const double off = f.matrix->at(i, j) - better.matrix->at(i, j);
         square += off * off;
       }
       const double error = std::sqrt(square);
@@ -164,7 +165,7 @@ TEST(ExactAgainstTruth, FacesAsPatchesAreTheSamePatches) {
   // twenty.
   for (std::size_t i = 0; i < own.mesh.size(); i += 7) {
     for (std::size_t j = 0; j < own.mesh.size(); ++j) {
-      ASSERT_NEAR(faces.factors.matrix.at(i, j), own.factors.matrix.at(i, j),
+      ASSERT_NEAR(faces.factors.matrix->at(i, j), own.factors.matrix->at(i, j),
                   0.02 / double(own.mesh.size()))
           << i << " " << j;
     }

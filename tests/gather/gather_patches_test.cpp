@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "gather_scenes.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "support/mesh_builder.h"
 
@@ -70,7 +71,7 @@ TEST(GatherAtPatches, EveryPassIsAJacobiIterate) {
     const double scale = largest(room.materials.emission);
     std::vector<double> b = room.materials.emission;
     for (int passes = 1; passes <= 4; ++passes) {
-      b = jacobiStep(room, factors.matrix, b);
+      b = jacobiStep(room, pairsOf(*factors.matrix), b);
       const Gathered gathered = test::gathered(room, atPatches(passes));
       ASSERT_EQ(gathered.summary.passes.size(), std::size_t(passes));
       EXPECT_LE(worst(gathered.radiosity, b), 1e-6 * scale) << scene << " pass " << passes;
@@ -83,7 +84,8 @@ TEST(GatherAtPatches, DiffersFromTheTransposedMatrix) {
   // pass already differs by far more than the 1e-6 the test above allows.
   const Room room = test::loadRoom("cornell-box-closed", 250);
   const FormFactors factors = matrixOf(room, 64);
-  const std::vector<double> wrong = jacobiStep(room, factors.matrix, room.materials.emission, true);
+  const std::vector<double> wrong =
+      jacobiStep(room, pairsOf(*factors.matrix), room.materials.emission, true);
   const Gathered gathered = test::gathered(room, atPatches(1));
   EXPECT_GT(worst(gathered.radiosity, wrong), 1e-2 * largest(room.materials.emission));
 }

@@ -503,7 +503,7 @@ TEST(GpuEye, FormFactorsEqualTheProcessorsWithinAFewPixels) {
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     double sum = 0;
     for (std::size_t j = 0; j < mesh.size(); ++j) {
-      sum += std::abs(gl.matrix.at(i, j) - cpu.matrix.at(i, j));
+      sum += std::abs(gl.matrix->at(i, j) - cpu.matrix->at(i, j));
     }
     row = std::max(row, sum);
   }

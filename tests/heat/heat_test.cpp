@@ -122,7 +122,7 @@ TEST(Heat, SphericalCavityHasItsEffectiveEmissivity) {
       // The power that leaves is that of the aperture at that emissivity: a of the whole sphere
       // times (1 - a) of it, flat.
       double area = 0;
-      for (const double a : factors.matrix.area()) area += a;
+      for (const double a : factors.matrix->area()) area += a;
       EXPECT_NEAR(s.summary.balance.radiated / (effective * sigmaT4(700) * cap * area), 1, 1e-12);
       EXPECT_NEAR(s.summary.balance.to_sky / s.summary.balance.radiated, 1, 1e-12);
     }
@@ -193,9 +193,9 @@ TEST(Heat, IterationReachesThroughAHundredSheets) {
   for (Index i = 1; i + 1 < n; ++i) system.node[i] = (i - 1) / 2;
   Progress quiet;
   const auto direct =
-      solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::direct);
+      solveHeatSystem(*factors.matrix, system, {}, 1e-12, quiet, LinearMethod::direct);
   const auto steps =
-      solveHeatSystem(factors.matrix, system, {}, 1e-12, quiet, LinearMethod::iterative);
+      solveHeatSystem(*factors.matrix, system, {}, 1e-12, quiet, LinearMethod::iterative);
   // The residual, 1e-12, over the least eigenvalue, which is above 1/n^2 of .3.
   EXPECT_LT(test::largestDifference(direct.irradiance, steps.irradiance), 1e-7);
   EXPECT_LT(steps.products, 250u);
@@ -236,9 +236,9 @@ TEST(Heat, DirectAndIterativeSolutionsAgree) {
   }
   Progress quiet;
   const HeatFields direct =
-      solveHeatSystem(factors.matrix, system, {}, 1e-13, quiet, LinearMethod::direct);
+      solveHeatSystem(*factors.matrix, system, {}, 1e-13, quiet, LinearMethod::direct);
   const HeatFields iterative =
-      solveHeatSystem(factors.matrix, system, {}, 1e-13, quiet, LinearMethod::iterative);
+      solveHeatSystem(*factors.matrix, system, {}, 1e-13, quiet, LinearMethod::iterative);
   EXPECT_EQ(direct.products, 0);
   EXPECT_GT(iterative.products, 3);
   double largest = 0;

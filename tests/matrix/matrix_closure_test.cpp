@@ -56,8 +56,8 @@ struct Scene {
     }
   }
 
-  ExchangeMatrix matrix(Precision precision = Precision::double_precision) const {
-    auto matrix = ExchangeMatrix::symmetric(area, order, precision);
+  SymmetricMatrix matrix(Precision precision = Precision::double_precision) const {
+    auto matrix = SymmetricMatrix(area, order, precision);
     for (std::size_t k = 0; k < n; ++k) {
       std::vector<double> row;
       for (std::size_t q = k; q < n; ++q) row.push_back(raw(k, q));
@@ -128,16 +128,24 @@ Vector leastChange(const std::vector<Scene::Pair>& pairs, Vector lacking,
   return change;
 }
 
-ClosureReport closed(ExchangeMatrix& matrix, const UncertainEntries& uncertain,
+ClosureReport closed(SymmetricMatrix& matrix, const UncertainEntries& uncertain,
                      const std::vector<double>& target, double tolerance = 1e-9) {
   Progress silent;
   return closeRows(matrix, uncertain, target, silent, tolerance);
 }
 
+SymmetricMatrix ofRows(const std::vector<std::vector<double>>& upper, Precision precision) {
+  std::vector<Index> order(upper.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  auto matrix = SymmetricMatrix(std::vector<double>(upper.size(), 1.0), order, precision);
+  for (std::size_t k = 0; k < upper.size(); ++k) matrix.setUpperRow(k, upper[k]);
+  return matrix;
+}
+
 TEST(LeastSquaresClosure, IsTheLeastChange) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const Scene scene(30, 0.4, 1.0 / 64, seed);
-    ExchangeMatrix matrix = scene.matrix();
+    SymmetricMatrix matrix = scene.matrix();
     const ClosureReport report = closed(matrix, scene.uncertain(), std::vector<double>(30, 1.0));
     ASSERT_TRUE(report.reached) << seed;
     EXPECT_EQ(report.emptied, 0u);
@@ -171,8 +179,8 @@ TEST(LeastSquaresClosure, IsTheLeastChange) {
 TEST(LeastSquaresClosure, LeavesKnownEntriesUnchanged) {
   const Scene scene(40, 0.3, 1.0 / 64, 3);
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
-    ExchangeMatrix matrix = scene.matrix(precision);
-    const ExchangeMatrix before = matrix;
+    SymmetricMatrix matrix = scene.matrix(precision);
+    const SymmetricMatrix before = scene.matrix(precision);
     const ClosureReport report = closed(matrix, scene.uncertain(), std::vector<double>(40, 1.0));
     EXPECT_TRUE(report.reached) << report.largest_residual;
     double largest = 0;
@@ -239,7 +247,7 @@ TEST(LeastSquaresClosure, HoldsEntriesAtZeroThatWouldTurnNegative) {
       if (feasible && (best.size() == 0 || change.norm() < best.norm())) best = change;
     }
     ASSERT_GT(best.size(), 0);  // the truth is feasible at least
-    ExchangeMatrix matrix = scene.matrix();
+    SymmetricMatrix matrix = scene.matrix();
     const ClosureReport report =
         closed(matrix, scene.uncertain(), std::vector<double>(5, 1.0), 1e-12);
     EXPECT_TRUE(report.reached) << seed;
@@ -258,13 +266,12 @@ TEST(LeastSquaresClosure, HoldsEntriesAtZeroThatWouldTurnNegative) {
 
 TEST(LeastSquaresClosure, ReportsRowsThatItCannotClose) {
   // Rows 0 and 1 exchange, rows 2 and 3 exchange; only the first pair is uncertain.
-  auto matrix =
-      ExchangeMatrix::symmetric({1.0, 1.0, 1.0, 1.0}, {0, 1, 2, 3}, Precision::double_precision);
-  matrix.setUpperRow(0, std::vector<double>{0.0, 0.75});
-  matrix.setUpperRow(2, std::vector<double>{0.0, 0.5});
+  const auto twoPairs = [] {
+    return ofRows({{0.0, 0.75}, {}, {0.0, 0.5}, {}}, Precision::double_precision);
+  };
   UncertainEntries uncertain(4);
   uncertain.setRow(0, std::vector<Index>{1}, std::vector<double>{0.25});
-  ExchangeMatrix other = matrix;
+  SymmetricMatrix other = twoPairs();
   ClosureReport report = closed(other, uncertain, std::vector<double>(4, 1.0));
   EXPECT_FALSE(report.reached);
   EXPECT_EQ(report.fixed_rows, 2u);
@@ -272,14 +279,14 @@ TEST(LeastSquaresClosure, ReportsRowsThatItCannotClose) {
   EXPECT_NEAR(other.at(0, 1), 1.0, 1e-9);
   EXPECT_EQ(other.at(2, 3), 0.5);
   // One value cannot give its two rows different sums: the nearest is the mean.
-  other = matrix;
-  report = closed(other, uncertain, {0.5, 0.7, 0.5, 0.5});
+  SymmetricMatrix uneven = twoPairs();
+  report = closed(uneven, uncertain, {0.5, 0.7, 0.5, 0.5});
   EXPECT_FALSE(report.reached);
   EXPECT_EQ(report.fixed_rows, 0u);
   EXPECT_NEAR(report.largest_residual, 0.1, 1e-9);
-  EXPECT_NEAR(other.at(0, 1), 0.6, 1e-9);
+  EXPECT_NEAR(uneven.at(0, 1), 0.6, 1e-9);
   // Empty rows have nothing to close.
-  auto sparse = ExchangeMatrix::symmetric({1.0, 1.0, 0.0}, {2, 0, 1}, Precision::single_precision);
+  auto sparse = SymmetricMatrix({1.0, 1.0, 0.0}, {2, 0, 1}, Precision::single_precision);
   sparse.setUpperRow(1, std::vector<double>{0.0, 1.0});
   report = closed(sparse, UncertainEntries(3), std::vector<double>(3, 1.0));
   EXPECT_TRUE(report.reached);
@@ -291,7 +298,7 @@ TEST(LeastSquaresClosure, ThreadsAndScaleDoNotChangeABit) {
   const Scene scene(700, 0.1, 1.0 / 1024, 5);
   const std::vector<double> target(700, 1.0);
   const auto valuesOf = [&](const Scene& s) {
-    ExchangeMatrix matrix = s.matrix(Precision::single_precision);
+    SymmetricMatrix matrix = s.matrix(Precision::single_precision);
     const ClosureReport report = closed(matrix, s.uncertain(), target);
     EXPECT_TRUE(report.reached);
     EXPECT_LT(report.iterations, 100);
@@ -322,7 +329,7 @@ TEST(LeastSquaresClosure, TakesFewStepsIfPatchesSeeMostlyEachOther) {
   for (Eigen::Index k = 0; k < Eigen::Index(kPatches); k += 2) {
     scene.error(k, k + 1) = std::exp2(-0.25 * double(k % 40)) / 256;  // others: 2^-15 at most
   }
-  ExchangeMatrix matrix = scene.matrix();
+  SymmetricMatrix matrix = scene.matrix();
   const ClosureReport report =
       closed(matrix, scene.uncertain(), std::vector<double>(kPatches, 1.0));
   EXPECT_TRUE(report.reached) << report.largest_residual;
@@ -331,7 +338,7 @@ TEST(LeastSquaresClosure, TakesFewStepsIfPatchesSeeMostlyEachOther) {
 }
 
 /// Every entry of a symmetric matrix, the square of its error proportional to its exchange area.
-UncertainEntries allOf(const ExchangeMatrix& matrix) {
+UncertainEntries allOf(const SymmetricMatrix& matrix) {
   UncertainEntries uncertain(matrix.size());
   for (std::size_t k = 0; k < matrix.size(); ++k) {
     std::vector<double> values(matrix.size() - k);
@@ -346,14 +353,6 @@ UncertainEntries allOf(const ExchangeMatrix& matrix) {
     uncertain.setRow(k, later, errors);
   }
   return uncertain;
-}
-
-ExchangeMatrix ofRows(const std::vector<std::vector<double>>& upper, Precision precision) {
-  std::vector<Index> order(upper.size());
-  std::iota(order.begin(), order.end(), Index(0));
-  auto matrix = ExchangeMatrix::symmetric(std::vector<double>(upper.size(), 1.0), order, precision);
-  for (std::size_t k = 0; k < upper.size(); ++k) matrix.setUpperRow(k, upper[k]);
-  return matrix;
 }
 
 // Patch 0 exchanges with 1 and 2, which see only it: the row sums A_i t_i must balance, and with
@@ -413,7 +412,7 @@ TEST(LeastSquaresClosure, SharesBesideTheMatrixMoveByTheirErrors) {
       rows(Eigen::Index(k), Eigen::Index(pairs.size() + k)) = scene.area[patch] * error[patch];
     }
     const Vector expected = rows.completeOrthogonalDecomposition().solve(scene.lacking());
-    ExchangeMatrix matrix = scene.matrix();
+    SymmetricMatrix matrix = scene.matrix();
     Progress silent;
     const ClosureReport report =
         closeRows(matrix, scene.uncertain(), std::vector<double>(kPatches, 1.0), silent, 1e-9,
@@ -432,14 +431,18 @@ TEST(LeastSquaresClosure, SharesBesideTheMatrixMoveByTheirErrors) {
 // the sky of the plate has to give way, for the small rows have no room.
 TEST(LeastSquaresClosure, ASmallPatchIsNotMadeToSeeMoreThanItsView) {
   const std::vector<double> area{100, 1, 1};
-  auto matrix = ExchangeMatrix::symmetric(area, {0, 1, 2}, Precision::double_precision);
-  matrix.setUpperRow(0, std::vector<double>{0, 0.005, 0.005});
+  const auto plateAndTwo = [&] {
+    SymmetricMatrix made(area, {0, 1, 2}, Precision::double_precision);
+    made.setUpperRow(0, std::vector<double>{0, 0.005, 0.005});
+    return made;
+  };
+  SymmetricMatrix matrix = plateAndTwo();
   UncertainEntries uncertain(3);
   uncertain.setRow(0, std::vector<Index>{1, 2}, std::vector<double>{1e-4, 1e-4});
   const std::vector<double> fronts{0.011, 0.5, 0.5};
   const std::vector<double> sky{0.989, 0.5, 0.5};
   Progress silent;
-  ExchangeMatrix without = matrix;
+  SymmetricMatrix without = plateAndTwo();
   EXPECT_FALSE(closeRows(without, uncertain, fronts, silent).reached);
   const ClosureReport report =
       closeRows(matrix, uncertain, fronts, silent, 1e-12,
@@ -491,7 +494,7 @@ TEST(UncertainEntries, TakeAByteEach) {
 
 /// What a patch, or the patches of an unknown, see of themselves is an entry like the others.
 TEST(UncertainEntries, TheDiagonalIsClosedToo) {
-  auto matrix = ExchangeMatrix::symmetric({1.0, 1.0}, {0, 1}, Precision::double_precision);
+  auto matrix = SymmetricMatrix({1.0, 1.0}, {0, 1}, Precision::double_precision);
   matrix.setUpperRow(0, std::vector<double>{0.5, 0.3});
   matrix.setUpperRow(1, std::vector<double>{0.7});
   UncertainEntries uncertain(2);
@@ -516,10 +519,8 @@ TEST(UncertainEntries, RefuseInvalidErrors) {
   EXPECT_THROW(set(0, {1}, {-0.1}), InputError);
   EXPECT_THROW(set(0, {1}, {std::nan("")}), InputError);
   EXPECT_THROW(set(0, {1}, {double(INFINITY)}), InputError);
-  ExchangeMatrix rows({1.0, 1.0}, Precision::single_precision);
   const std::vector<double> ones(2, 1.0);
-  EXPECT_THROW(closed(rows, UncertainEntries(2), ones), InputError);
-  auto matrix = ExchangeMatrix::symmetric({1.0, 1.0}, {0, 1}, Precision::single_precision);
+  auto matrix = SymmetricMatrix({1.0, 1.0}, {0, 1}, Precision::single_precision);
   EXPECT_THROW(closed(matrix, UncertainEntries(3), ones), InputError);
   EXPECT_THROW(closed(matrix, UncertainEntries(2), {1.0, 1.0, 1.0}), InputError);
   EXPECT_THROW(closed(matrix, UncertainEntries(2), {1.0, -1.0}), InputError);

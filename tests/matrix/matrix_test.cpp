@@ -1,4 +1,4 @@
-// The exchange matrix against plain dense arithmetic, and its reciprocity by hand.
+// A matrix of rows against plain dense arithmetic, and its reciprocity by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,8 +26,8 @@ Dense randomDense(std::size_t n, double fill, unsigned seed) {
   return dense;
 }
 
-ExchangeMatrix toMatrix(const Dense& dense, std::vector<double> area, Precision precision) {
-  ExchangeMatrix matrix(std::move(area), precision);
+RowMatrix toMatrix(const Dense& dense, std::vector<double> area, Precision precision) {
+  RowMatrix matrix(std::move(area), precision);
   for (std::size_t i = 0; i < dense.size(); ++i) {
     std::vector<Index> columns;
     std::vector<double> values;
@@ -41,9 +41,9 @@ ExchangeMatrix toMatrix(const Dense& dense, std::vector<double> area, Precision 
   return matrix;
 }
 
-TEST(ExchangeMatrix, StoresEachRowInTheSmallerForm) {
+TEST(RowMatrix, StoresEachRowInTheSmallerForm) {
   const std::size_t n = 12;
-  ExchangeMatrix matrix(std::vector<double>(n, 1.0), Precision::single_precision);
+  RowMatrix matrix(std::vector<double>(n, 1.0), Precision::single_precision);
   const std::vector<Index> six{0, 2, 4, 6, 8, 10};
   const std::vector<Index> seven{0, 2, 4, 6, 8, 10, 11};
   const std::vector<double> values(7, 0.25);
@@ -63,7 +63,7 @@ TEST(ExchangeMatrix, StoresEachRowInTheSmallerForm) {
   EXPECT_EQ(matrix.nonZeros(), 7u);
 }
 
-TEST(ExchangeMatrix, VisitsAColumnRangeInOrder) {
+TEST(RowMatrix, VisitsAColumnRangeInOrder) {
   for (const double fill : {0.1, 0.9}) {
     const Dense dense = randomDense(50, fill, 3);
     const auto matrix = toMatrix(dense, std::vector<double>(50, 1.0), Precision::double_precision);
@@ -81,7 +81,7 @@ TEST(ExchangeMatrix, VisitsAColumnRangeInOrder) {
 }
 
 // Sparse rows and dense rows, 1 to 9 bands (several walks along a row), against the definition.
-TEST(ExchangeMatrix, ProductIsTheSumOverColumns) {
+TEST(RowMatrix, ProductIsTheSumOverColumns) {
   const std::size_t n = 101;
   for (const double fill : {0.05, 0.95}) {
     const Dense dense = randomDense(n, fill, 5);
@@ -106,7 +106,7 @@ TEST(ExchangeMatrix, ProductIsTheSumOverColumns) {
 
 // Rows that fill most of a small matrix are stored dense;
 // padding the matrix with empty columns flips the storage and must not change a bit.
-TEST(ExchangeMatrix, StorageAndThreadsDoNotChangeABit) {
+TEST(RowMatrix, StorageAndThreadsDoNotChangeABit) {
   const std::size_t n = 60;
   const std::size_t padded = 400;
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
@@ -133,11 +133,11 @@ TEST(ExchangeMatrix, StorageAndThreadsDoNotChangeABit) {
   }
 }
 
-TEST(ExchangeMatrix, EstimateEqualsTheStoredBytes) {
+TEST(RowMatrix, EstimateEqualsTheStoredBytes) {
   const std::size_t n = 200;
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     for (const std::size_t entries : {std::size_t{3}, std::size_t{90}, std::size_t{150}, n}) {
-      ExchangeMatrix matrix(std::vector<double>(n, 1.0), precision);
+      RowMatrix matrix(std::vector<double>(n, 1.0), precision);
       std::vector<Index> columns(entries);
       for (std::size_t k = 0; k < entries; ++k) columns[k] = Index(k);
       const std::vector<double> values(entries, 0.5);
@@ -147,11 +147,11 @@ TEST(ExchangeMatrix, EstimateEqualsTheStoredBytes) {
   }
 }
 
-TEST(ExchangeMatrix, RefusesImpossibleFormFactors) {
+TEST(RowMatrix, RefusesImpossibleFormFactors) {
   const double nan = std::nan("");
-  EXPECT_THROW(ExchangeMatrix({1.0, -1.0}, Precision::double_precision), InputError);
-  EXPECT_THROW(ExchangeMatrix({1.0, nan}, Precision::double_precision), InputError);
-  ExchangeMatrix matrix({1.0, 1.0, 1.0}, Precision::double_precision);
+  EXPECT_THROW(RowMatrix({1.0, -1.0}, Precision::double_precision), InputError);
+  EXPECT_THROW(RowMatrix({1.0, nan}, Precision::double_precision), InputError);
+  RowMatrix matrix({1.0, 1.0, 1.0}, Precision::double_precision);
   const auto set = [&](std::size_t i, std::vector<Index> columns, std::vector<double> values) {
     matrix.setRow(i, columns, values);
   };
@@ -171,8 +171,8 @@ TEST(Reciprocity, ResidualEqualsThatByHand) {
   EXPECT_NEAR(reciprocityResidual(matrix), std::sqrt(0.02 / 0.61), 1e-15);  // rounding
   const auto exact = toMatrix({{0, 0.25}, {0.5, 0}}, {2.0, 1.0}, Precision::double_precision);
   EXPECT_EQ(reciprocityResidual(exact), 0.0);
-  EXPECT_EQ(reciprocityResidual(ExchangeMatrix({1.0, 1.0}, Precision::single_precision)), 0.0);
-  EXPECT_EQ(reciprocityResidual(ExchangeMatrix()), 0.0);
+  EXPECT_EQ(reciprocityResidual(RowMatrix({1.0, 1.0}, Precision::single_precision)), 0.0);
+  EXPECT_EQ(reciprocityResidual(RowMatrix({}, Precision::single_precision)), 0.0);
 }
 
 // A_0 = 2, A_1 = 1: the estimate made at patch 0 gets 1/5, the one at patch 1 gets 4/5.

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "radiosity/symmetric_matrix.h"
+
 namespace radiosity {
 namespace {
 
@@ -14,11 +16,11 @@ using page::encodeFactors;
 using page::FactorCodes;
 
 /// Patches of equal area whose pairs k apart exchange factors[k], 0 being a patch with itself.
-ExchangeMatrix banded(std::size_t n, const std::vector<double>& factors) {
+SymmetricMatrix banded(std::size_t n, const std::vector<double>& factors) {
   std::vector<Index> order(n);
   std::iota(order.begin(), order.end(), Index(0));
-  ExchangeMatrix matrix =
-      ExchangeMatrix::symmetric(std::vector<double>(n, 1.0), order, Precision::double_precision);
+  SymmetricMatrix matrix =
+      SymmetricMatrix(std::vector<double>(n, 1.0), order, Precision::double_precision);
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t count = std::min(factors.size(), n - k);
     matrix.setUpperRow(k, std::span(factors).first(count));
@@ -73,8 +75,7 @@ TEST(FactorCodes, NegligibleFactorsAreLeftOutAndCounted) {
 /// A small patch in view of a large one: a factor near 0 one way counts the other way.
 TEST(FactorCodes, SmallFactorsOfLargePatchesAreKept) {
   Progress progress;
-  ExchangeMatrix matrix =
-      ExchangeMatrix::symmetric({1.0, 1e-12}, {0, 1}, Precision::double_precision);
+  SymmetricMatrix matrix = SymmetricMatrix({1.0, 1e-12}, {0, 1}, Precision::double_precision);
   matrix.setUpperRow(0, std::vector<double>{0, 3e-13});
   matrix.setUpperRow(1, std::vector<double>{0});
   const FactorCodes codes = encodeFactors(matrix, progress);

@@ -19,6 +19,7 @@
 #include "page/page.h"
 #include "page/surfaces.h"
 #include "page_reader.h"
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/pipeline.h"
 #include "support/error_of.h"
 #include "support/results_folder.h"
@@ -144,7 +145,7 @@ void expectMaterials(Made& made) {
 /// Every form factor, both ways; and its error in the header.
 void expectFactors(Made& made, bool dense) {
   const PageReader& page = made.page();
-  const ExchangeMatrix& matrix = made.pipeline.matrix();
+  const ExchangeMatrix& matrix = pairsOf(made.pipeline.matrix());
   const std::size_t n = matrix.size();
   EXPECT_EQ(page.indices("factor_column").empty(), dense);
   const std::vector<double> f = page.factors();
@@ -171,7 +172,7 @@ void expectFactors(Made& made, bool dense) {
   EXPECT_NEAR(q.largest_row_error, largest_row_error, 3 * kSingle);
   EXPECT_EQ(page.header["quantisation"]["largest_row_error"], q.largest_row_error);
   EXPECT_LT(q.largest_row_error, q.largest_relative_error);  // of rows that sum to at most 1
-  const auto order = made.pipeline.matrix().order();
+  const auto order = matrix.order();
   EXPECT_EQ(page.indices("order"), std::vector<Index>(order.begin(), order.end()));
   const auto row_sum = page.floats("row_sum");
   const auto row_sky = page.floats("row_sky");

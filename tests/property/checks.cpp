@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/patch_mesh.h"
@@ -167,13 +168,13 @@ class Checker {
   void checkAccounts(const std::string& by, const FormFactors& f) {
     const bool has_errors = !f.error.empty();
     const auto sane = [](double value) { return std::isfinite(value) && value >= 0; };
-    const double terms = std::sqrt(double(f.matrix.size()) + 1);
-    for (std::size_t i = 0; i < f.matrix.size(); ++i) {
+    const double terms = std::sqrt(double(f.matrix->size()) + 1);
+    for (std::size_t i = 0; i < f.matrix->size(); ++i) {
       double sum = 0;
-      f.matrix.forRow(i, [&](Index j, double value) {
+      pairsOf(*f.matrix).forRow(i, [&](Index j, double value) {
         if (!sane(value)) fault("negative " + by, "F({}, {}) = {}", i, j, value);
         sum += value;
-        if (f.matrix.isSymmetric()) checkPair(by, f.matrix, i, j, value);
+        if (f.matrix->isSymmetric()) checkPair(by, *f.matrix, i, j, value);
       });
       if (!sane(f.fronts[i]) || !sane(f.backs[i]) || !sane(f.sky[i]) ||
           (has_errors && !sane(f.error[i]))) {
@@ -182,16 +183,16 @@ class Checker {
       }
       const double stated = has_errors ? terms * f.error[i] + kClosedForm : kSingleSum;
       const double all = sum + f.backs[i] + f.sky[i];
-      if (f.matrix.area()[i] > 0 && !(std::abs(all - 1) <= stated)) {
+      if (f.matrix->area()[i] > 0 && !(std::abs(all - 1) <= stated)) {
         fault("row sum " + by, "row {}: {} + {} + {} = {}, stated {}", i, sum, f.backs[i], f.sky[i],
               all, stated);
       }
     }
-    if (by == "exact" && !f.matrix.isSymmetric()) fault("reciprocity exact", "stored as rows");
+    if (by == "exact" && !f.matrix->isSymmetric()) fault("reciprocity exact", "stored as rows");
   }
 
   /// One value is stored a pair: the other is off by the rounding of a product and a quotient.
-  void checkPair(const std::string& by, const ExchangeMatrix& f, std::size_t i, Index j,
+  void checkPair(const std::string& by, const ExchangeOperator& f, std::size_t i, Index j,
                  double value) {
     const double there = f.area()[i] * value;
     const double back = f.area()[j] * f.at(j, i);
@@ -239,8 +240,8 @@ class Checker {
   /// Rows are within their figures, those of the tight run allowed for.
   void checkErrors(const std::string& by, const FormFactors& f, const FormFactors& truth) {
     RowCount& count = findings_.rows[by];
-    const std::size_t n = truth.matrix.size();
-    const std::span<const double> area = truth.matrix.area();
+    const std::size_t n = truth.matrix->size();
+    const std::span<const double> area = truth.matrix->area();
     std::vector<double> row(n);
     double squares = 0;
     double norms = 0;
@@ -248,11 +249,11 @@ class Checker {
     for (std::size_t i = 0; i < n; ++i) {
       std::fill(row.begin(), row.end(), 0.0);
       double norm = 0;
-      truth.matrix.forRow(i, [&](Index j, double value) {
+      pairsOf(*truth.matrix).forRow(i, [&](Index j, double value) {
         row[j] = value;
         norm += value * value;
       });
-      f.matrix.forRow(i, [&](Index j, double value) { row[j] -= value; });
+      pairsOf(*f.matrix).forRow(i, [&](Index j, double value) { row[j] -= value; });
       double square = 0;
       for (const double difference : row) square += difference * difference;
       squares += area[i] * square;
@@ -292,7 +293,7 @@ class Checker {
   /// Sums over surfaces against what the making of the scene tells.
   void checkKnown(const std::string& by, const FormFactors& f) {
     if (model_.known.at_weld_distance && (isNoted("weld") || isNoted("coincide"))) return;
-    const std::span<const double> area = f.matrix.area();
+    const std::span<const double> area = f.matrix->area();
     if (model_.known.sky_area) {
       double sky = 0;
       double stated = 0;
@@ -313,12 +314,12 @@ class Checker {
     double exchange = 0;
     double from_area = 0;
     double stated = 0;
-    for (std::size_t i = 0; i < f.matrix.size(); ++i) {
+    for (std::size_t i = 0; i < f.matrix->size(); ++i) {
       if (!isOf(i, known.from)) continue;
-      const double area = f.matrix.area()[i];
+      const double area = f.matrix->area()[i];
       from_area += area;
-      stated += area * f.error[i] * std::sqrt(double(f.matrix.size()));
-      f.matrix.forRow(i, [&](Index j, double value) {
+      stated += area * f.error[i] * std::sqrt(double(f.matrix->size()));
+      pairsOf(*f.matrix).forRow(i, [&](Index j, double value) {
         if (isOf(j, known.to)) exchange += area * value;
       });
     }
@@ -352,9 +353,10 @@ class Checker {
     };
     bool equal = sameAll(one.fronts, two.fronts) && sameAll(one.backs, two.backs) &&
                  sameAll(one.sky, two.sky) && sameAll(one.error, two.error);
-    for (std::size_t i = 0; i < one.matrix.size() && equal; ++i) {
-      one.matrix.forRow(
-          i, [&](Index j, double value) { equal = equal && same(value, two.matrix.at(i, j)); });
+    for (std::size_t i = 0; i < one.matrix->size() && equal; ++i) {
+      pairsOf(*one.matrix).forRow(i, [&](Index j, double value) {
+        equal = equal && same(value, two.matrix->at(i, j));
+      });
     }
     if (!equal) fault(std::string("threads ") + method.name, "other bits with two threads");
   }
@@ -373,7 +375,7 @@ class Checker {
   void checkInsideOut(const FormFactors& truth) {
     const std::vector<Note>& notes = truth.report.notes;
     const bool noted = isNoted("outward", notes) || isNoted("flip", notes);
-    if (truth.matrix.nonZeros() == 0 && !noted) {
+    if (pairsOf(*truth.matrix).nonZeros() == 0 && !noted) {
       fault("inside out", "nothing sees anything, and no note says why");
     }
   }

@@ -47,7 +47,7 @@ Results clusteredSample(Index side) {
   mesh.clusters = sample::clusters(mesh);
   FormFactors& f = *r.factors;
   Progress progress;
-  f.matrix = aggregated(f.matrix, mesh.clusters->of_patch, mesh.clusters->size(), progress);
+  f.matrix = aggregated(*f.matrix, mesh.clusters->of_patch, mesh.clusters->size(), progress);
   for (auto* rows : {&f.fronts, &f.backs, &f.sky, &f.error}) rows->resize(mesh.clusters->size());
   return r;
 }
@@ -135,7 +135,7 @@ TEST_F(ResultsFile, LeavesTheMatrixOutOnRequest) {
   write(written);
   const Results read = readResults(file(), false);
   FormFactors bare = sample::factors(sample::mesh(3), Precision::single_precision);
-  bare.matrix = {};
+  bare.matrix.reset();
   EXPECT_TRUE(sample::same(bare, *read.factors));
   EXPECT_TRUE(sample::same(written.solution, read.solution));
   // Written back it would lose the matrix without a word.

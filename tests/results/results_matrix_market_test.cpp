@@ -16,7 +16,8 @@ TEST_F(MatrixMarket, HoldsEveryEntryToTheBit) {
   for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
     // 17 x 17 patches: rows of all kinds. 60 x 60: more text than one batch of tasks holds.
     for (const Index side : {17u, 60u}) {
-      const ExchangeMatrix matrix = sample::matrix(sample::mesh(side), precision);
+      const auto stored = sample::matrix(sample::mesh(side), precision);
+      const RowMatrix& matrix = *stored;
       writeMatrixMarket(path("x.mtx"), matrix, progress_);
       std::ifstream file(path("x.mtx"));
       std::string line;
@@ -45,8 +46,7 @@ TEST_F(MatrixMarket, HoldsEveryEntryToTheBit) {
 // The far side of a pair of a symmetric matrix is computed from the near one: it is written as a
 // results file holds it, rounded likewise.
 TEST_F(MatrixMarket, RoundsLikeTheResultsFile) {
-  ExchangeMatrix matrix =
-      ExchangeMatrix::symmetric({1, 3, 0.7}, {0, 1, 2}, Precision::single_precision);
+  SymmetricMatrix matrix({1, 3, 0.7}, {0, 1, 2}, Precision::single_precision);
   const std::vector<double> first = {0, 0.3, 0.1};
   const std::vector<double> second = {0, 0.05};
   matrix.setUpperRow(0, first);
@@ -69,7 +69,7 @@ TEST_F(MatrixMarket, RoundsLikeTheResultsFile) {
 }
 
 TEST_F(MatrixMarket, AnEmptyMatrixHasNoEntries) {
-  writeMatrixMarket(path("x.mtx"), ExchangeMatrix({1, 2}, Precision::single_precision), progress_);
+  writeMatrixMarket(path("x.mtx"), RowMatrix({1, 2}, Precision::single_precision), progress_);
   std::ifstream file(path("x.mtx"));
   std::string line;
   while (std::getline(file, line) && line[0] == '%') {
@@ -78,7 +78,8 @@ TEST_F(MatrixMarket, AnEmptyMatrixHasNoEntries) {
 }
 
 TEST_F(MatrixMarket, IsWrittenWholeOrNotAtAll) {
-  const ExchangeMatrix matrix = sample::matrix(sample::mesh(17), Precision::single_precision);
+  const auto stored = sample::matrix(sample::mesh(17), Precision::single_precision);
+  const RowMatrix& matrix = *stored;
   for (const rlim_t limit : {0, 100, 100000}) {
     const FullDisk disk(limit);
     expectError<RunError>(path("x.mtx"), "cannot be written",

@@ -15,6 +15,8 @@
 #include "radiosity/names.h"
 #include "radiosity/report_line.h"
 #include "radiosity/results.h"
+#include "radiosity/row_matrix.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace radiosity::sample {
 
@@ -160,8 +162,8 @@ inline PatchClusters clusters(const PatchMesh& m) {
 }
 
 /// Rows of all kinds: empty (patch 1), sparse, and, from patch 2 on every fifth, full.
-inline ExchangeMatrix matrix(const PatchMesh& m, Precision precision) {
-  ExchangeMatrix f(m.area, precision);
+inline std::shared_ptr<const RowMatrix> matrix(const PatchMesh& m, Precision precision) {
+  auto f = std::make_shared<RowMatrix>(m.area, precision);
   const std::size_t n = m.size();
   std::mt19937 random(7);
   std::uniform_real_distribution<double> value(1e-9, 1.0 / double(n));
@@ -173,19 +175,20 @@ inline ExchangeMatrix matrix(const PatchMesh& m, Precision precision) {
       columns.push_back(j);
       values.push_back(value(random));
     }
-    f.setRow(i, columns, values);
+    f->setRow(i, columns, values);
   }
   return f;
 }
 
 /// The same kinds of rows, reciprocal, stored in an order of its own.
-inline ExchangeMatrix symmetricMatrix(const PatchMesh& m, Precision precision) {
+inline std::shared_ptr<const SymmetricMatrix> symmetricMatrix(const PatchMesh& m,
+                                                              Precision precision) {
   const std::size_t n = m.size();
   std::mt19937 random(11);
   std::vector<Index> order(n);
   for (std::size_t k = 0; k < n; ++k) order[k] = Index(k);
   std::shuffle(order.begin(), order.end(), random);
-  auto f = ExchangeMatrix::symmetric(m.area, order, precision);
+  auto f = std::make_shared<SymmetricMatrix>(m.area, order, precision);
   std::uniform_real_distribution<double> value(1e-9, 1.0 / double(n));
   for (std::size_t k = 0; k < n; ++k) {
     std::vector<double> row(n - k, 0.0);
@@ -193,7 +196,7 @@ inline ExchangeMatrix symmetricMatrix(const PatchMesh& m, Precision precision) {
       if (m.area[order[k]] == 0 || m.area[order[k + q]] == 0) continue;
       if (k % 5 == 2 || random() % 16 == 0) row[q] = value(random);
     }
-    f.setUpperRow(k, row);
+    f->setUpperRow(k, row);
   }
   return f;
 }
@@ -201,7 +204,7 @@ inline ExchangeMatrix symmetricMatrix(const PatchMesh& m, Precision precision) {
 inline FormFactors factors(const PatchMesh& m, Precision precision) {
   FormFactors f;
   f.matrix = matrix(m, precision);
-  f.fronts = f.matrix.rowSums();
+  f.fronts = f.matrix->rowSums();
   for (std::size_t i = 0; i < m.size(); ++i) {
     f.backs.push_back(1.0 / double(i + 3));
     f.sky.push_back(1.0 - 1.0 / double(i + 3) - f.fronts[i]);
@@ -519,7 +522,7 @@ bool same(const std::optional<T>& a, const std::optional<T>& b) {
 }
 /// Value for value to the bit, stored alike.
 inline bool same(const ExchangeMatrix& a, const ExchangeMatrix& b) {
-  if (a.size() != b.size() || a.precision() != b.precision() || a.denseRows() != b.denseRows() ||
+  if (a.size() != b.size() || a.precision() != b.precision() ||
       !std::equal(a.order().begin(), a.order().end(), b.order().begin(), b.order().end()) ||
       a.nonZeros() != b.nonZeros() || a.bytes() != b.bytes()) {
     return false;
@@ -533,6 +536,10 @@ inline bool same(const ExchangeMatrix& a, const ExchangeMatrix& b) {
     if (left != right || a.area()[i] != b.area()[i]) return false;
   }
   return true;
+}
+inline bool same(const std::shared_ptr<const ExchangeOperator>& a,
+                 const std::shared_ptr<const ExchangeOperator>& b) {
+  return a == b || (a && b && same(pairsOf(*a), pairsOf(*b)));
 }
 template <class T>
 bool same(const T& a, const T& b) {

@@ -21,7 +21,7 @@ class ResultsSymmetric : public FolderTest {
     Results results = sample::results(side, precision);
     FormFactors& factors = *results.factors;
     factors.matrix = sample::symmetricMatrix(results.mesh->mesh, precision);
-    factors.fronts = factors.matrix.rowSums();
+    factors.fronts = factors.matrix->rowSums();
     return results;
   }
   /// A dataset as another program reads it.
@@ -57,9 +57,9 @@ TEST_F(ResultsSymmetric, IsReadBackToTheBit) {
       // HDF5 hands out metadata in blocks of 2 KiB, some of them half empty: two of them, or 5%.
       EXPECT_NEAR(double(estimateResultsBytes(written)), size, std::max(4096.0, 0.05 * size));
       const Results read = readResults(file());
-      ASSERT_TRUE(read.factors->matrix.isSymmetric());
-      const ExchangeMatrix& a = written.factors->matrix;
-      const ExchangeMatrix& b = read.factors->matrix;
+      ASSERT_TRUE(read.factors->matrix->isSymmetric());
+      const auto& a = dynamic_cast<const SymmetricMatrix&>(*written.factors->matrix);
+      const auto& b = dynamic_cast<const SymmetricMatrix&>(*read.factors->matrix);
       EXPECT_TRUE(std::equal(a.order().begin(), a.order().end(), b.order().begin()));
       EXPECT_EQ(a.bytes(), b.bytes());
       std::size_t wrong = 0;
@@ -83,24 +83,25 @@ TEST_F(ResultsSymmetric, PartsHoldEveryRowOnceAndAsManyPairs) {
   const std::size_t n = written.mesh->mesh.size();
   std::vector<Index> order(n);
   std::iota(order.begin(), order.end(), 0u);
-  auto matrix =
-      ExchangeMatrix::symmetric(std::vector<double>(n, 1.0), order, Precision::single_precision);
+  const auto matrix = std::make_shared<SymmetricMatrix>(std::vector<double>(n, 1.0), order,
+                                                        Precision::single_precision);
   for (std::size_t k = 0; k < n; ++k) {
     std::vector<Index> later(n - 1 - k);
     std::iota(later.begin(), later.end(), Index(k + 1));
-    matrix.setUpperRow(k, later, std::vector<double>(later.size(), 1e-6));
+    matrix->setUpperRow(k, later, std::vector<double>(later.size(), 1e-6));
   }
-  written.factors->matrix = std::move(matrix);
-  written.factors->fronts = written.factors->matrix.rowSums();
+  written.factors->matrix = matrix;
+  written.factors->fronts = written.factors->matrix->rowSums();
   writeResults(file(), written, progress_);
   std::vector<int> kept(n, 0);
   std::size_t all = 0;
   for (std::size_t part = 0; part < 3; ++part) {
-    const ExchangeMatrix read = readMatrixPart(file(), {part, 3});
+    const auto read =
+        std::dynamic_pointer_cast<const SymmetricMatrix>(readMatrixPart(file(), {part, 3}));
     std::size_t pairs = 0;
     for (std::size_t k = 0; k < n; ++k) {
       std::vector<double> row(n - k);
-      read.upperRow(k, row);
+      read->upperRow(k, row);
       const auto entries = std::size_t(std::ranges::count_if(row, [](double v) { return v > 0; }));
       pairs += entries;
       kept[k] += entries > 0 ? 1 : 0;
@@ -118,7 +119,7 @@ TEST_F(ResultsSymmetric, TheFileHoldsAllOfFAsCompressedRows) {
   const auto indptr = dataset<std::int64_t>("/form_factors/indptr", H5T_NATIVE_INT64);
   const auto indices = dataset<std::int32_t>("/form_factors/indices", H5T_NATIVE_INT32);
   const auto data = dataset<float>("/form_factors/data", H5T_NATIVE_FLOAT);
-  const ExchangeMatrix& matrix = written.factors->matrix;
+  const ExchangeMatrix& matrix = pairsOf(*written.factors->matrix);
   std::size_t at = 0;
   for (std::size_t i = 0; i < matrix.size(); ++i) {
     ASSERT_EQ(std::size_t(indptr[i]), at);
@@ -143,7 +144,7 @@ TEST_F(ResultsSymmetric, NamesFieldsThatAreNotSymmetric) {
   std::swap(order[2], order[6]);
   change("/form_factors/order", H5T_NATIVE_UINT32, order);
   // Still a permutation, and any pattern with both ends of each pair fits it.
-  EXPECT_TRUE(readResults(file()).factors->matrix.isSymmetric());
+  EXPECT_TRUE(readResults(file()).factors->matrix->isSymmetric());
   order[2] = order[3];
   change("/form_factors/order", H5T_NATIVE_UINT32, order);
   refused("/form_factors/order does not name every patch once");
@@ -167,8 +168,8 @@ TEST_F(ResultsSymmetric, NamesFieldsThatAreNotSymmetric) {
 }
 
 TEST_F(ResultsSymmetric, MatrixMarketHoldsAllOfF) {
-  const ExchangeMatrix matrix =
-      sample::symmetricMatrix(sample::mesh(17), Precision::single_precision);
+  const auto stored = sample::symmetricMatrix(sample::mesh(17), Precision::single_precision);
+  const SymmetricMatrix& matrix = *stored;
   writeMatrixMarket(path("x.mtx"), matrix, progress_);
   std::ifstream text(path("x.mtx"));
   std::string line;

@@ -10,7 +10,6 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/patch_mesh.h"
 #include "solve/iteration.h"
-#include "solve/matrix_rooms.h"
 #include "solve_systems.h"
 #include "support/scene_builder.h"
 
@@ -19,11 +18,12 @@ namespace {
 
 using test::Matrix;
 
-Matrix denseOf(const ExchangeMatrix& matrix) {
+Matrix denseOf(const ExchangeOperator& matrix) {
   const auto n = Eigen::Index(matrix.size());
   Matrix f = Matrix::Zero(n, n);
   for (std::size_t i = 0; i < matrix.size(); ++i) {
-    matrix.forRow(i, [&](Index j, double value) { f(Eigen::Index(i), Eigen::Index(j)) = value; });
+    pairsOf(matrix).forRow(
+        i, [&](Index j, double value) { f(Eigen::Index(i), Eigen::Index(j)) = value; });
   }
   return f;
 }
@@ -50,10 +50,10 @@ FormFactors boxFactors(std::size_t patches, PatchMesh& mesh) {
 TEST(ConjugateGradients, SolveABrightBoxWithinFifteenProducts) {
   PatchMesh mesh;
   const FormFactors factors = boxFactors(600, mesh);
-  const std::size_t n = factors.matrix.size();
+  const std::size_t n = factors.matrix->size();
   ASSERT_GT(n, 500u);
-  ASSERT_TRUE(factors.matrix.isSymmetric());
-  const Matrix f = denseOf(factors.matrix);
+  ASSERT_TRUE(factors.matrix->isSymmetric());
+  const Matrix f = denseOf(*factors.matrix);
   for (const double rho : {0.5, 0.9, 0.99, 0.999}) {
     const std::vector<double> reflectance(n * 3, rho);
     std::vector<double> emission(n * 3, 0.0);
@@ -176,7 +176,8 @@ TEST(ConjugateGradients, RefuseRowsThatAreNotSymmetric) {
 TEST(DirectSolver, RefusesMoreUnknownsThanItCanHold) {
   const std::size_t n = kMostDirectUnknowns + 1;
   FormFactors factors;
-  factors.matrix = ExchangeMatrix(std::vector<double>(n, 1.0), Precision::single_precision);
+  factors.matrix =
+      std::make_shared<RowMatrix>(std::vector<double>(n, 1.0), Precision::single_precision);
   test::setAccounts(factors, 0);
   Progress quiet;
   EXPECT_THROW(solve(factors, std::vector<double>(n, 0.5), std::vector<double>(n, 1.0), 1,
@@ -240,7 +241,7 @@ TEST(ConjugateGradients, TakeAnySourceOfLight) {
   const auto source = random.vector(n * 2, -1.0, 1.0);
   const auto expected = test::direct(f, rho, source, 2);
   const FormFactors factors = test::symmetricFactorsFrom(f, area);
-  const System system(factors.matrix, 2, rho, source);
+  const System system(*factors.matrix, 2, rho, source);
   for (const auto run : {conjugateGradients, gmres, direct, jacobi, gaussSeidel}) {
     Progress quiet;
     Convergence convergence(1e-12, 10000, "solving", quiet);
@@ -264,7 +265,7 @@ TEST(MatrixRooms, ArePatchesJoinedByLight) {
   f.row(7).setZero();
   f.col(7).setZero();
   const FormFactors factors = test::symmetricFactorsFrom(f, std::vector<double>(n, 1.0));
-  const MatrixRooms rooms = matrixRooms(factors.matrix);
+  const ExchangeOperator::Rooms rooms = factors.matrix->rooms();
   EXPECT_EQ(rooms.count, 4u);  // and patch 7 alone
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
@@ -280,8 +281,8 @@ TEST(MatrixRooms, AreJoinedBySingleEntriesOfLongRows) {
   constexpr std::size_t kRooms = 7;
   std::vector<Index> order(kPatches);
   std::iota(order.begin(), order.end(), Index(0));
-  auto matrix = ExchangeMatrix::symmetric(std::vector<double>(kPatches, 1.0), order,
-                                          Precision::single_precision);
+  auto matrix =
+      SymmetricMatrix(std::vector<double>(kPatches, 1.0), order, Precision::single_precision);
   std::mt19937 random(19);
   for (std::size_t k = 0; k + kRooms < kPatches; ++k) {
     std::vector<double> row(kPatches - k, 0.0);
@@ -289,7 +290,7 @@ TEST(MatrixRooms, AreJoinedBySingleEntriesOfLongRows) {
     row[kRooms * std::uniform_int_distribution<std::size_t>(1, last)(random)] = 1e-3;
     matrix.setUpperRow(k, row);
   }
-  const MatrixRooms rooms = matrixRooms(matrix);
+  const ExchangeOperator::Rooms rooms = matrix.rooms();
   EXPECT_EQ(rooms.count, kRooms);
   for (std::size_t i = 0; i < kPatches; ++i) EXPECT_EQ(rooms.of_patch[i], i % kRooms) << i;
 }
@@ -299,14 +300,14 @@ TEST(MatrixRooms, AreNotJoinedByStoredZeros) {
   constexpr std::size_t kPatches = 1400;
   std::vector<Index> order(kPatches);
   std::iota(order.begin(), order.end(), Index(0));
-  auto matrix = ExchangeMatrix::symmetric(std::vector<double>(kPatches, 1.0), order,
-                                          Precision::single_precision);
+  auto matrix =
+      SymmetricMatrix(std::vector<double>(kPatches, 1.0), order, Precision::single_precision);
   for (std::size_t k = 0; k + 1 < kPatches; ++k) {
     std::vector<double> row(kPatches - k, 0.0);
     for (std::size_t m = 2; m < row.size(); m += 2) row[m] = 1e-4;
     matrix.setUpperRow(k, row);
   }
-  const MatrixRooms rooms = matrixRooms(matrix);
+  const ExchangeOperator::Rooms rooms = matrix.rooms();
   EXPECT_EQ(rooms.count, 2u);
   for (std::size_t i = 0; i < kPatches; ++i) EXPECT_EQ(rooms.of_patch[i], i % 2) << i;
 }

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/row_matrix.h"
 #include "radiosity/solve.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace radiosity::test {
 
@@ -16,8 +18,8 @@ using Matrix = Eigen::MatrixXd;
 
 /// The rest of a row to 1 goes to the sky, but for its share `on_backs`. Rows above 1 lose nothing.
 inline void setAccounts(FormFactors& factors, double on_backs) {
-  const std::size_t n = factors.matrix.size();
-  factors.fronts = factors.matrix.rowSums();
+  const std::size_t n = factors.matrix->size();
+  factors.fronts = factors.matrix->rowSums();
   factors.sky.resize(n);
   factors.backs.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -31,8 +33,7 @@ inline void setAccounts(FormFactors& factors, double on_backs) {
 inline FormFactors factorsFrom(const Matrix& dense, std::vector<double> area, double on_backs = 0.0,
                                Precision precision = Precision::double_precision) {
   const auto n = std::size_t(dense.rows());
-  FormFactors factors;
-  factors.matrix = ExchangeMatrix(std::move(area), precision);
+  const auto matrix = std::make_shared<RowMatrix>(std::move(area), precision);
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<Index> columns;
     std::vector<double> values;
@@ -42,8 +43,10 @@ inline FormFactors factorsFrom(const Matrix& dense, std::vector<double> area, do
       columns.push_back(Index(j));
       values.push_back(value);
     }
-    factors.matrix.setRow(i, columns, values);
+    matrix->setRow(i, columns, values);
   }
+  FormFactors factors;
+  factors.matrix = matrix;
   setAccounts(factors, on_backs);
   return factors;
 }
@@ -57,13 +60,14 @@ inline FormFactors symmetricFactorsFrom(const Matrix& dense, std::vector<double>
   std::vector<Index> order(n);
   for (std::size_t k = 0; k < n; ++k) order[k] = Index(k);
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
-  FormFactors factors;
-  factors.matrix = ExchangeMatrix::symmetric(std::move(area), order, precision);
+  const auto matrix = std::make_shared<SymmetricMatrix>(std::move(area), order, precision);
   for (std::size_t k = 0; k < n; ++k) {
     std::vector<double> row;
     for (std::size_t q = k; q < n; ++q) row.push_back(dense(order[k], order[q]));
-    factors.matrix.setUpperRow(k, row);
+    matrix->setUpperRow(k, row);
   }
+  FormFactors factors;
+  factors.matrix = matrix;
   setAccounts(factors, on_backs);
   return factors;
 }
@@ -172,12 +176,12 @@ inline constexpr Solver kSolvers[] = {Solver::jacobi, Solver::gauss_seidel, Solv
 /// These, and for a symmetric matrix conjugate gradients.
 inline std::vector<Solver> solversOf(const FormFactors& factors) {
   std::vector<Solver> solvers(std::begin(kSolvers), std::end(kSolvers));
-  if (factors.matrix.isSymmetric()) solvers.push_back(Solver::cg);
+  if (factors.matrix->isSymmetric()) solvers.push_back(Solver::cg);
   return solvers;
 }
 inline std::vector<Solver> iterationsOf(const FormFactors& factors) {
   std::vector<Solver> solvers(std::begin(kIterations), std::end(kIterations));
-  if (factors.matrix.isSymmetric()) solvers.push_back(Solver::cg);
+  if (factors.matrix->isSymmetric()) solvers.push_back(Solver::cg);
   return solvers;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "radiosity/row_matrix.h"
 #include "support/results_folder.h"
 
 namespace radiosity {
@@ -91,10 +92,11 @@ NamedFactors threeRows() {
   NamedFactors factors;
   factors.numbered = true;
   factors.names = {"a b", "lamp/light", ""};
-  ExchangeMatrix matrix({2, 0.5, 1}, Precision::double_precision);
-  matrix.setRow(0, std::vector<Index>{1, 2}, std::vector<double>{0.1, 1. / 3});
-  matrix.setRow(1, std::vector<Index>{0}, std::vector<double>{0.4});
-  factors.matrix = std::make_shared<const ExchangeMatrix>(matrix);
+  const auto matrix =
+      std::make_shared<RowMatrix>(std::vector<double>{2, 0.5, 1}, Precision::double_precision);
+  matrix->setRow(0, std::vector<Index>{1, 2}, std::vector<double>{0.1, 1. / 3});
+  matrix->setRow(1, std::vector<Index>{0}, std::vector<double>{0.4});
+  factors.matrix = matrix;
   factors.sky = {0.25, 0.6, 1};
   factors.backs = {0.3, 0, 0};
   return factors;
@@ -161,10 +163,11 @@ TEST_F(MatrixFiles, DifferencesEqualThoseWorkedOutByHand) {
   MatrixFile a;
   a.factors = threeRows();
   MatrixFile b = a;
-  ExchangeMatrix other({2, 0.5, 1}, Precision::double_precision);
-  other.setRow(0, std::vector<Index>{1, 2}, std::vector<double>{0.1, 0.3});
-  other.setRow(1, std::vector<Index>{0, 2}, std::vector<double>{0.4, 0.2});
-  b.factors.matrix = std::make_shared<const ExchangeMatrix>(other);
+  const auto other =
+      std::make_shared<RowMatrix>(std::vector<double>{2, 0.5, 1}, Precision::double_precision);
+  other->setRow(0, std::vector<Index>{1, 2}, std::vector<double>{0.1, 0.3});
+  other->setRow(1, std::vector<Index>{0, 2}, std::vector<double>{0.4, 0.2});
+  b.factors.matrix = other;
   const MatrixComparison c = compareMatrices(a, b, progress_);
   const double squares = 2 * (0.01 + 1. / 9) + 0.5 * 0.16;
   const double difference = 2 * (1. / 3 - 0.3) * (1. / 3 - 0.3) + 0.5 * 0.04;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "formfactor/computed_factors.h"
+#include "radiosity/row_matrix.h"
 #include "support/error_of.h"
 #include "support/mesh_builder.h"
 #include "support/results_folder.h"
@@ -88,7 +89,7 @@ struct Sample {
     mesh.clusters = clusters;
     std::vector<double> area(mesh.unknowns(), 0.0);
     for (Index i = 0; i < mesh.size(); ++i) area[i / 2] += mesh.area[i];
-    factors.matrix = ExchangeMatrix(area, Precision::double_precision);
+    const auto matrix = std::make_shared<RowMatrix>(area, Precision::double_precision);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> value(0.01, 0.1);
     for (std::size_t u = 0; u < area.size(); ++u) {
@@ -99,12 +100,13 @@ struct Sample {
         columns.push_back(v);
         values.push_back(value(random));
       }
-      factors.matrix.setRow(u, columns, values);
+      matrix->setRow(u, columns, values);
       factors.sky.push_back(value(random));
       factors.backs.push_back(value(random));
       factors.error.push_back(1e-3 * value(random));
     }
-    factors.fronts = factors.matrix.rowSums();
+    factors.fronts = matrix->rowSums();
+    factors.matrix = matrix;
   }
   PatchMesh mesh;
   FormFactors factors;
@@ -120,7 +122,7 @@ TEST_F(Tables, SumsOfSharedUnknownsEqualThoseMadeByHand) {
   double exchange[2][2] = {};
   double sky[2] = {};
   double area[2] = {};
-  const ExchangeMatrix& f = sample.factors.matrix;
+  const ExchangeOperator& f = *sample.factors.matrix;
   for (std::size_t u = 0; u < f.size(); ++u) {
     area[rowOf(2 * u)] += f.area()[u];
     sky[rowOf(2 * u)] += f.area()[u] * sample.factors.sky[u];
@@ -140,23 +142,28 @@ TEST_F(Tables, SumsOfSharedUnknownsEqualThoseMadeByHand) {
   EXPECT_DOUBLE_EQ(area[1], 2) << "both sides of the sheet";
 }
 
-TEST_F(Tables, MatricesOnDiskGiveTheSameBits) {
-  Sample sample;
-  const NamedFactors in_memory = between(sample.mesh, sample.factors);
-  const std::vector<double> area(sample.factors.matrix.area().begin(),
-                                 sample.factors.matrix.area().end());
-  ExchangeMatrix on_disk(area, Precision::double_precision,
-                         std::make_shared<ScratchMemory>(folder_.string(), 0));
+/// The same rows, in scratch memory if it is given.
+std::shared_ptr<RowMatrix> copied(const ExchangeOperator& matrix,
+                                  std::shared_ptr<ScratchMemory> scratch = nullptr) {
+  const std::vector<double> area(matrix.area().begin(), matrix.area().end());
+  auto copy = std::make_shared<RowMatrix>(area, Precision::double_precision, std::move(scratch));
   for (std::size_t u = 0; u < area.size(); ++u) {
     std::vector<Index> columns;
     std::vector<double> values;
-    sample.factors.matrix.forRow(u, [&](Index v, double value) {
+    pairsOf(matrix).forRow(u, [&](Index v, double value) {
       columns.push_back(v);
       values.push_back(value);
     });
-    on_disk.setRow(u, columns, values);
+    copy->setRow(u, columns, values);
   }
-  sample.factors.matrix = std::move(on_disk);
+  return copy;
+}
+
+TEST_F(Tables, MatricesOnDiskGiveTheSameBits) {
+  Sample sample;
+  const NamedFactors in_memory = between(sample.mesh, sample.factors);
+  sample.factors.matrix =
+      copied(*sample.factors.matrix, std::make_shared<ScratchMemory>(folder_.string(), 0));
   const NamedFactors from_disk = between(sample.mesh, sample.factors);
   for (std::size_t a = 0; a < 3; ++a) {
     EXPECT_EQ(from_disk.sky[a], in_memory.sky[a]);
@@ -237,17 +244,19 @@ TEST_F(Tables, NamesAndAreasThatPartnersCannotReadAreRefused) {
   expectError<InputError>(path("x.idf"), "ignores case", idf("B=a", "z"));
   expectError<InputError>(path("x.idf"), "'' is no name", idf("c=a", ""));
   FormFactors above = sample.factors;
-  for (std::size_t u = 0; u < above.matrix.size(); ++u) {
+  const std::shared_ptr<RowMatrix> rows_above = copied(*above.matrix);
+  above.matrix = rows_above;
+  for (std::size_t u = 0; u < above.matrix->size(); ++u) {
     if (sample.mesh.surface_names[sample.mesh.surface[2 * u]] != "b") continue;
-    above.matrix.setRow(u, std::vector<Index>{0}, std::vector<double>{1 + 1e-6});
+    rows_above->setRow(u, std::vector<Index>{0}, std::vector<double>{1 + 1e-6});
   }
   expectError<InputError>(path("x.idf"), "F from b to a is 1.000001", [&] {
     writeEnergyPlus(path("x.idf"), between(sample.mesh, above), "z", progress_);
   });
   FormFactors flat = sample.factors;
-  std::vector<double> area(flat.matrix.area().begin(), flat.matrix.area().end());
+  std::vector<double> area(flat.matrix->area().begin(), flat.matrix->area().end());
   area.back() = 0;  // the last cluster: of the sheet's backs
-  flat.matrix = ExchangeMatrix(area, Precision::double_precision);
+  flat.matrix = std::make_shared<RowMatrix>(area, Precision::double_precision);
   const NamedFactors rows = factorsOfUnknowns(sample.mesh, flat);
   expectError<InputError>(path("x.vf"), "patch 7 has no area", [&] {
     writeView3d(path("x.vf"), rows, std::vector<double>(rows.size(), 0.5), progress_);

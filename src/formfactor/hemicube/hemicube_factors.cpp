@@ -52,6 +52,7 @@ struct Rows {
   const KnownEntries& known;  ///< by patch
   ClosedRows& closed;
   RowJournal* journal;
+  RowMatrix& matrix;
   FormFactors& result;
   std::vector<std::vector<SeenBack>>& seen_backs;
   std::vector<std::uint8_t> made;  ///< by row; 1 also for empty ones
@@ -60,8 +61,8 @@ struct Rows {
 /// Stores row i as it was seen, or with its near entries corrected. The sky of a closed one is
 /// leaks: it goes without.
 void storeRow(std::size_t i, const HemicubeView& view, bool closed, const NearPairs* near_pairs,
-              PackedRow& row, FormFactors& result, std::vector<SeenBack>& seen_backs,
-              HemicubeReport& counts) {
+              PackedRow& row, Rows& rows, HemicubeReport& counts) {
+  FormFactors& result = rows.result;
   const std::size_t n = result.fronts.size();
   row.pack(view, n);
   const double sky = closed ? 0.0 : view.sky;
@@ -77,10 +78,11 @@ void storeRow(std::size_t i, const HemicubeView& view, bool closed, const NearPa
     result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
     result.sky[i] = scaled.rest * sky + scaled.sky;
   }
-  result.matrix.setRow(i, row.columns, row.values);
+  rows.matrix.setRow(i, row.columns, row.values);
   result.backs[i] = rest * view.backs;
   for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
-    if (view.items[item] > 0) seen_backs.push_back({Index(item - n), rest * view.items[item]});
+    if (!(view.items[item] > 0)) continue;
+    rows.seen_backs[i].push_back({Index(item - n), rest * view.items[item]});
   }
 }
 
@@ -89,7 +91,7 @@ void storeRow(std::size_t i, const HemicubeView& view, bool closed, const NearPa
 void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
   const auto entries = rows.known.at(i);
   FormFactors& result = rows.result;
-  const double area = result.matrix.area()[i];
+  const double area = rows.matrix.area()[i];
   if (rows.known.empty() || !(area > 0)) return;
   row.columns.clear();
   row.values.clear();
@@ -104,7 +106,7 @@ void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
   };
   const bool whole = rows.known.rowAt(i) != nullptr;
   bool seen = false;  // known ones, from the eye
-  result.matrix.forRow(i, [&](Index j, double value) {
+  rows.matrix.forRow(i, [&](Index j, double value) {
     if (whole || rows.known.rowAt(j) != nullptr) {
       seen = true;
       return;
@@ -133,7 +135,7 @@ void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
     for (SeenBack& back : rows.seen_backs[i]) back.share *= scaled.rest;
     result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
   }
-  result.matrix.setRow(i, row.columns, row.values);
+  rows.matrix.setRow(i, row.columns, row.values);
 }
 
 /// The number of rows that need not be made: empty ones and those in the journal.
@@ -154,8 +156,10 @@ void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, HemicubeRepo
                RowStore& store) {
   const NearPairs* near_pairs = rows.scene.near_pairs ? &*rows.scene.near_pairs : nullptr;
   const bool closed = rows.closed.keeps(i, view.sky, kMostLeaks);
-  storeRow(i, view, closed, near_pairs, store.row, rows.result, rows.seen_backs[i], counts);
-  if (rows.journal != nullptr) keepRow(*rows.journal, i, rows.result, rows.seen_backs[i], counts);
+  storeRow(i, view, closed, near_pairs, store.row, rows, counts);
+  if (rows.journal != nullptr) {
+    keepRow(*rows.journal, i, rows.matrix, rows.result, rows.seen_backs[i], counts);
+  }
   replaceKnown(rows, i, store.row);
   store.counts += counts;
   rows.made[i] = 1;
@@ -176,7 +180,9 @@ HemicubeReport takeRows(Rows& rows, RowRange range, const Progress& progress) {
     rows.made[i] = rows.scene.rows.isEmpty(i);
     if (rows.made[i] != 0 || rows.journal == nullptr) return;
     RowStore& store = stores.local();
-    rows.made[i] = takeRow(*rows.journal, i, rows.result, rows.seen_backs[i], store.counts) ? 1 : 0;
+    const bool taken =
+        takeRow(*rows.journal, i, rows.matrix, rows.result, rows.seen_backs[i], store.counts);
+    rows.made[i] = taken ? 1 : 0;
     if (rows.made[i] == 0) return;
     rows.closed.keeps(i, rows.result.sky[i], 0);
     replaceKnown(rows, i, store.row);
@@ -303,19 +309,18 @@ KnownEntries knownByPatch(std::vector<KnownRow> rows, std::size_t patches, Proce
   return {std::move(rows), position};
 }
 
-HemicubeReport fillRows(const HemicubeScene& scene, const KnownEntries& known, ClosedRows& closed,
-                        RowJournal* journal, Processes* processes, FormFactors& result,
-                        std::vector<std::vector<SeenBack>>& seen_backs, Progress& progress) {
-  const std::size_t n = result.fronts.size();
-  Rows rows{scene, known, closed, journal, result, seen_backs, std::vector<std::uint8_t>(n, 0)};
-  Workers workers([&] { return Worker{scene.rows.makeHemicube(), {}, {}}; });
-  progress.begin("form factors", n, "rows", rowsThere(scene.rows, n, journal));
+HemicubeReport fillRows(Rows rows, Processes* processes, Progress& progress) {
+  const RowBuilder& builder = rows.scene.rows;
+  const std::size_t n = rows.matrix.size();
+  rows.made.assign(n, 0);
+  Workers workers([&] { return Worker{builder.makeHemicube(), {}, {}}; });
+  progress.begin("form factors", n, "rows", rowsThere(builder, n, rows.journal));
   HemicubeReport counts;
   if (processes != nullptr) {
     counts = shareRows(*processes, rows, workers, progress);
   } else {
     counts = takeRows(rows, {0, n}, progress);
-    if (scene.gpu != nullptr) counts += makeRowsByGpu(rows, progress);
+    if (rows.scene.gpu != nullptr) counts += makeRowsByGpu(rows, progress);
     makeRows(rows, {0, n}, workers, progress);
     counts += takeCounts(workers);
   }
@@ -324,33 +329,31 @@ HemicubeReport fillRows(const HemicubeScene& scene, const KnownEntries& known, C
   return counts;
 }
 
-/// Form factors without rows yet.
-FormFactors emptyRows(const PatchMesh& mesh, const FormFactorOptions& options,
-                      std::shared_ptr<ScratchMemory> scratch) {
+/// Form factors without a matrix yet.
+FormFactors emptyAccounts(std::size_t n) {
   FormFactors result;
-  result.matrix = ExchangeMatrix(mesh.area, options.storedPrecision(), std::move(scratch));
   for (std::vector<double>* account : {&result.fronts, &result.backs, &result.sky}) {
-    account->assign(mesh.size(), 0.0);
+    account->assign(n, 0.0);
   }
   return result;
 }
 
 /// The smallest area above 0.
-double smallestArea(const ExchangeMatrix& matrix) {
+double smallestOf(std::span<const double> area) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (const double a : matrix.area()) smallest = a > 0 ? std::min(smallest, a) : smallest;
+  for (const double a : area) smallest = a > 0 ? std::min(smallest, a) : smallest;
   return smallest;
 }
 
 /// The errors of a merged matrix's entries: their squares go with the exchange area, as in van
 /// Leersum's closure (closure.h); known ones have none. The unit, the `smallest` area, keeps errors
 /// of F below 1.
-UncertainEntries uncertainEntries(const ExchangeMatrix& matrix, double smallest,
+UncertainEntries uncertainEntries(const SymmetricMatrix& matrix, double smallest,
                                   const KnownEntries& known) {
   const std::size_t n = matrix.size();
   UncertainEntries uncertain(n, matrix.scratch());
   parallelFor(n, 1, [&](std::size_t k) {
-    const ExchangeMatrix::UpperEntries upper = matrix.upperEntries(k);
+    const SymmetricMatrix::UpperEntries upper = matrix.upperEntries(k);
     const double share = smallest / matrix.area()[matrix.order()[k]];
     std::vector<Index> later;
     std::vector<double> errors;
@@ -372,22 +375,24 @@ std::vector<double> skyErrors(const ClosedRows& closed, double smallest, const F
   std::vector<double> errors(f.sky.size(), 0.0);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (closed.closed(i) || !(f.fronts[i] > 0)) continue;
-    errors[i] = std::sqrt(kMostLeaks * smallest / f.matrix.area()[i]);
+    errors[i] = std::sqrt(kMostLeaks * smallest / f.matrix->area()[i]);
   }
   return errors;
 }
 
-void symmetrize(const KnownEntries& known, const ClosedRows& closed, FormFactors& result,
-                Progress& progress) {
+void symmetrize(std::shared_ptr<const RowMatrix> rows, const KnownEntries& known,
+                const ClosedRows& closed, FormFactors& result, Progress& progress) {
   constexpr double kTolerance = 1e-12;
-  result.matrix = symmetrized(result.matrix);
+  const auto merged = std::make_shared<SymmetricMatrix>(symmetrized(*rows));
+  result.matrix = merged;
+  rows.reset();
   // The sums to restore are the raw ones: with backs and, in an open row, the sky they are 1.
-  const double smallest = smallestArea(result.matrix);
+  const double smallest = smallestOf(merged->area());
   const std::vector<double> sky_errors = skyErrors(closed, smallest, result);
-  result.report.closure = closeRows(result.matrix, uncertainEntries(result.matrix, smallest, known),
+  result.report.closure = closeRows(*merged, uncertainEntries(*merged, smallest, known),
                                     result.fronts, progress, kTolerance, {result.sky, sky_errors});
   result.report.symmetrized = true;
-  const std::vector<double> sums = result.matrix.rowSums();
+  const std::vector<double> sums = merged->rowSums();
   for (std::size_t i = 0; i < sums.size(); ++i) {
     // Keep a sum aimed at: storing rounds those of the matrix.
     if (!closed.closed(i) || !result.report.closure.reached) result.fronts[i] = sums[i];
@@ -417,20 +422,21 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
                             const FormFactorOptions& options, Progress& progress,
                             RowJournal* journal, Processes* processes) {
   const std::size_t n = mesh.size();
-  FormFactors result = emptyRows(mesh, options, makeRowMemory(memory, options, n));
+  auto rows = std::make_shared<RowMatrix>(mesh.area, options.storedPrecision(),
+                                          makeRowMemory(memory, options, n));
+  FormFactors result = emptyAccounts(n);
   FormFactorReport& report = result.report;
   report.simd_target = scene.rows.kernels().target;
   const KnownEntries known = knownByPatch(std::move(known_rows), n, processes);
   std::vector<std::vector<SeenBack>> seen_backs(n);
   ClosedRows closed(mesh, false);
   report.hemicube =
-      fillRows(scene, known, closed, journal, processes, result, seen_backs, progress);
+      fillRows({scene, known, closed, journal, *rows, result, seen_backs, {}}, processes, progress);
   report.empty_rows = n - report.hemicube.hemicubes;
   closed.report(mesh, report);
-  if (processes != nullptr) {
-    result.matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(
-        *processes, std::move(result.matrix), [&progress] { progress.check(); }));
-  }
+  result.matrix = processes == nullptr ? std::shared_ptr<const ExchangeMatrix>(rows)
+                                       : std::make_shared<SharedRows>(
+                                             *processes, rows, [&progress] { progress.check(); });
   constexpr std::size_t kSteps = 2;
   progress.begin("finishing", kSteps);
   const auto step = [&] {
@@ -440,10 +446,10 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   accountForBacks(mesh, canonicalOrder(mesh), mesh.area, seen_backs, result);
   checkRows(result);
   step();
-  report.reciprocity_residual = reciprocityResidual(result.matrix);
+  report.reciprocity_residual = reciprocityResidual(pairsOf(*result.matrix));
   step();
   progress.end();
-  if (options.symmetrize) symmetrize(known, closed, result, progress);
+  if (options.symmetrize) symmetrize(std::move(rows), known, closed, result, progress);
   return result;
 }
 
@@ -498,16 +504,19 @@ std::unique_ptr<PreparedMethod> prepareHemicubes(const PatchMesh& mesh,
   return std::make_unique<Hemicubes>(mesh, options);
 }
 
-ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
-                                     Processes& processes, Progress& progress,
-                                     RowJournal* journal) {
+std::shared_ptr<const ExchangeMatrix> hemicubeRowsForOthers(const PatchMesh& mesh,
+                                                            const FormFactorOptions& options,
+                                                            Processes& processes,
+                                                            Progress& progress,
+                                                            RowJournal* journal) {
   const HemicubeScene scene(mesh, options);
-  FormFactors result = emptyRows(mesh, options, nullptr);
+  auto rows = std::make_shared<RowMatrix>(mesh.area, options.storedPrecision());
+  FormFactors result = emptyAccounts(mesh.size());
   std::vector<std::vector<SeenBack>> seen_backs(mesh.size());
   const KnownEntries known = knownByPatch({}, mesh.size(), &processes);
   ClosedRows closed(mesh, false);
-  fillRows(scene, known, closed, journal, &processes, result, seen_backs, progress);
-  return std::move(result.matrix);
+  fillRows({scene, known, closed, journal, *rows, result, seen_backs, {}}, &processes, progress);
+  return rows;
 }
 
 }  // namespace radiosity

@@ -41,7 +41,10 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
 std::unique_ptr<PreparedMethod> prepareHemicubes(const PatchMesh& mesh,
                                                  const FormFactorOptions& options);
 
-ExchangeMatrix hemicubeRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
-                                     Processes& processes, Progress& progress, RowJournal* journal);
+std::shared_ptr<const ExchangeMatrix> hemicubeRowsForOthers(const PatchMesh& mesh,
+                                                            const FormFactorOptions& options,
+                                                            Processes& processes,
+                                                            Progress& progress,
+                                                            RowJournal* journal);
 
 }  // namespace radiosity

@@ -10,7 +10,7 @@ namespace {
 
 /// Columns as distances from the one before: neighbours take a byte.
 template <class Value>
-void putEntries(const ExchangeMatrix& matrix, std::size_t i, ByteWriter& bytes) {
+void putEntries(const RowMatrix& matrix, std::size_t i, ByteWriter& bytes) {
   std::vector<Index> columns;
   std::vector<Value> values;
   matrix.forRow(i, [&](Index column, double value) {
@@ -35,19 +35,17 @@ void takeEntries(ByteReader& bytes, std::vector<Index>& columns, std::vector<dou
   }
 }
 
-bool isSingle(const ExchangeMatrix& matrix) {
-  return matrix.precision() == Precision::single_precision;
-}
+bool isSingle(const RowMatrix& matrix) { return matrix.precision() == Precision::single_precision; }
 
 }  // namespace
 
-void keepRow(RowJournal& journal, std::size_t i, const FormFactors& result,
+void keepRow(RowJournal& journal, std::size_t i, const RowMatrix& matrix, const FormFactors& result,
              const std::vector<SeenBack>& seen_backs, const HemicubeReport& counts) {
   ByteWriter bytes;
-  if (isSingle(result.matrix)) {
-    putEntries<float>(result.matrix, i, bytes);
+  if (isSingle(matrix)) {
+    putEntries<float>(matrix, i, bytes);
   } else {
-    putEntries<double>(result.matrix, i, bytes);
+    putEntries<double>(matrix, i, bytes);
   }
   bytes.put(result.fronts[i]);
   bytes.put(result.backs[i]);
@@ -57,14 +55,14 @@ void keepRow(RowJournal& journal, std::size_t i, const FormFactors& result,
   journal.keep(RowBlock::hemicube_row, i, bytes.bytes());
 }
 
-bool takeRow(const RowJournal& journal, std::size_t i, FormFactors& result,
+bool takeRow(const RowJournal& journal, std::size_t i, RowMatrix& matrix, FormFactors& result,
              std::vector<SeenBack>& seen_backs, HemicubeReport& counts) {
   if (!journal.has(RowBlock::hemicube_row, i)) return false;
   const std::vector<std::byte> block = journal.kept(RowBlock::hemicube_row, i);
   ByteReader bytes(block);
   std::vector<Index> columns;
   std::vector<double> values;
-  if (isSingle(result.matrix)) {
+  if (isSingle(matrix)) {
     takeEntries<float>(bytes, columns, values);
   } else {
     takeEntries<double>(bytes, columns, values);
@@ -75,7 +73,7 @@ bool takeRow(const RowJournal& journal, std::size_t i, FormFactors& result,
   std::vector<SeenBack> seen = bytes.getArray<SeenBack>();
   const auto counted = bytes.get<HemicubeReport>();
   if (!bytes.isWhole()) return false;
-  result.matrix.setRow(i, columns, values);
+  matrix.setRow(i, columns, values);
   result.fronts[i] = fronts;
   result.backs[i] = backs;
   result.sky[i] = sky;

@@ -135,7 +135,7 @@ void noteUnknown(const std::vector<RowAccuracy>& rows, double usual, double tole
 
 /// Stores the matrix, its error figures and the error of each entry.
 void store(const RayScene& scene, const KnownEntries& known, const std::vector<RayRow>& rows,
-           const RayAim& aim, ScratchMemory* scratch, FormFactors& result,
+           const RayAim& aim, ScratchMemory* scratch, SymmetricMatrix& matrix, FormFactors& result,
            UncertainEntries& uncertain) {
   const std::size_t n = rows.size();
   std::vector<double> density(n);
@@ -173,7 +173,7 @@ void store(const RayScene& scene, const KnownEntries& known, const std::vector<R
       upper.errors.push_back(mergedError(value, {density[k], j == k ? 0.0 : density[j]},
                                          {scene.area()[k], scene.area()[j]}));
     }
-    result.matrix.setUpperRow(k, upper.positions, upper.factors);
+    matrix.setUpperRow(k, upper.positions, upper.factors);
     uncertain.setRow(k, upper.positions, upper.errors);
   });
   double squares = 0;
@@ -219,9 +219,9 @@ void moveBacks(std::size_t i, double gained, Beside& beside, FormFactors& result
 /// By its own rays, fronts, backs and sky of a row sum to 1; merging has moved the fronts. The
 /// difference goes to fronts, backs and, in open rows, the sky, each by its error.
 void close(const ClosedRows& closed, const UncertainEntries& uncertain, ClosureMode mode,
-           Beside& beside, FormFactors& result, Progress& progress) {
+           SymmetricMatrix& matrix, Beside& beside, FormFactors& result, Progress& progress) {
   if (mode == ClosureMode::off) {
-    result.fronts = result.matrix.rowSums();
+    result.fronts = matrix.rowSums();
     return;
   }
   FormFactorReport& report = result.report;
@@ -232,10 +232,10 @@ void close(const ClosedRows& closed, const UncertainEntries& uncertain, ClosureM
     share[i] += result.sky[i];
     error[i] = std::hypot(error[i], beside.sky_error[i]);
   }
-  report.closure = closeRows(result.matrix, uncertain, result.fronts, progress, kClosureTolerance,
-                             {share, error});
+  report.closure =
+      closeRows(matrix, uncertain, result.fronts, progress, kClosureTolerance, {share, error});
   report.closure_enforced = true;
-  const std::vector<double> sums = result.matrix.rowSums();
+  const std::vector<double> sums = matrix.rowSums();
   for (std::size_t i = 0; i < n; ++i) {
     // Keep a sum aimed at, if nothing else has moved: storing rounds those of the matrix.
     if (closed.closed(i) && report.closure.reached && !(beside.backs_error[i] > 0)) continue;
@@ -256,10 +256,10 @@ void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
 }
 
 /// Deals the rows out to all processes.
-void share(Processes& processes, Progress& progress, ExchangeMatrix& matrix) {
+std::shared_ptr<const ExchangeMatrix> shared(Processes& processes, Progress& progress,
+                                             const SymmetricMatrix& matrix) {
   const WhileWaiting waiting = [&progress] { progress.check(); };
-  ExchangeMatrix own = dealRows(processes, matrix, waiting);
-  matrix = ExchangeMatrix::shared(std::make_shared<SharedRows>(processes, std::move(own), waiting));
+  return std::make_shared<SharedRows>(processes, dealRows(processes, matrix, waiting), waiting);
 }
 
 /// The rows that are closed, and the count of rays that leave them.
@@ -335,8 +335,8 @@ FormFactors Rays::make(KnownRows exact, Progress& progress, RowJournal* journal,
       castRows(scene, known, aim, report.rays, progress, journal, scratch.get(), processes);
   noteLoosened(options(), report);
   const ClosedRows closed = closedRows(mesh(), scene, rows, report);
-  result.matrix = ExchangeMatrix::symmetric(std::move(area), scene.order(),
-                                            options().storedPrecision(), scratch);
+  const auto matrix = std::make_shared<SymmetricMatrix>(std::move(area), scene.order(),
+                                                        options().storedPrecision(), scratch);
   result.fronts.assign(n, 0.0);
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
@@ -345,16 +345,17 @@ FormFactors Rays::make(KnownRows exact, Progress& progress, RowJournal* journal,
   UncertainEntries uncertain(n, scratch);
   const double storing = clockSeconds();
   setAccounts(scene, known, closed, rows, scratch.get(), result, beside);
-  store(scene, known, rows, aim, scratch.get(), result, uncertain);
+  store(scene, known, rows, aim, scratch.get(), *matrix, result, uncertain);
   rows = {};
   progress.check();
   const double closing = clockSeconds();
   report.rays.seconds_merge += closing - storing;
-  close(closed, uncertain, options().closure, beside, result, progress);
+  close(closed, uncertain, options().closure, *matrix, beside, result, progress);
   closed.balance(result);
-  accountForBacks(mesh(), scene.order(), result.matrix.area(), beside.seen_backs, result);
+  accountForBacks(mesh(), scene.order(), matrix->area(), beside.seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
-  if (processes != nullptr) share(*processes, progress, result.matrix);
+  result.matrix = matrix;
+  if (processes != nullptr) result.matrix = shared(*processes, progress, *matrix);
   return result;
 }
 
@@ -365,8 +366,10 @@ std::unique_ptr<PreparedMethod> prepareRays(const PatchMesh& mesh,
   return std::make_unique<Rays>(mesh, options);
 }
 
-ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
-                                Processes& processes, Progress& progress, RowJournal* /*journal*/) {
+std::shared_ptr<const ExchangeMatrix> rayRowsForOthers(const PatchMesh& mesh,
+                                                       const FormFactorOptions& options,
+                                                       Processes& processes, Progress& progress,
+                                                       RowJournal* /*journal*/) {
   castForOthers(processes, RayScene(mesh, options.seed), progress);
   return receiveRows(processes);
 }

@@ -31,7 +31,9 @@ std::unique_ptr<PreparedMethod> prepareRays(const PatchMesh& mesh,
 
 /// Casts a share of the rays. Returns the rows that fell to this process once process 0 had merged
 /// all.
-ExchangeMatrix rayRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
-                                Processes& processes, Progress& progress, RowJournal* journal);
+std::shared_ptr<const ExchangeMatrix> rayRowsForOthers(const PatchMesh& mesh,
+                                                       const FormFactorOptions& options,
+                                                       Processes& processes, Progress& progress,
+                                                       RowJournal* journal);
 
 }  // namespace radiosity

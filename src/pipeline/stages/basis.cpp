@@ -36,7 +36,7 @@ const LightBasis& Pipeline::basis() {
   key.add("factors", keyHash(usedFactorsKey().text()));
   return getOrMake(kStage<Stage::basis>, key, [&] {
     const FormFactors& factors = made(results_.factors);
-    requireSolver(options_.solve.solver, factors.matrix);
+    requireSolver(options_.solve.solver, *factors.matrix);
     LightBasis light = solveBasis(factors, materials, patches, sources, options_.solve, progress_);
     const SolveSummary& summary = light.solution.summary;
     if (!summary.usable()) throw RunError("light of single lamps: " + summary.message);

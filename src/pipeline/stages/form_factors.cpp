@@ -138,10 +138,10 @@ const FormFactors& Pipeline::factors() {
   });
 }
 
-const ExchangeMatrix& Pipeline::matrix() {
+const ExchangeOperator& Pipeline::matrix() {
   factors();
   loadMatrix();
-  return made(results_.factors).matrix;
+  return *made(results_.factors).matrix;
 }
 
 StageKey Pipeline::usedFactorsKey() const {

@@ -34,7 +34,7 @@ const Solution& Pipeline::solution() {
   const StageKey key = solutionKey(options_.solve, materialsOfMesh(), usedFactorsKey());
   return getOrMake(kStage<Stage::solution>, key, [this] {
     const FormFactors& factors = made(results_.factors);
-    requireSolver(options_.solve.solver, factors.matrix);
+    requireSolver(options_.solve.solver, *factors.matrix);
     return computedStage("solution", [&] {
       return solve(factors, made(results_.materials), made(results_.mesh).mesh, options_.solve,
                    progress_);

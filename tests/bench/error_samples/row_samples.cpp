@@ -28,7 +28,7 @@ void printRows(const PatchMesh& mesh, const FormFactors& factors, const FormFact
     if (!(factors.error[i] > 0)) continue;
     double square = 0;
     for (std::size_t j = 0; j < mesh.size(); ++j) {
-      const double off = factors.matrix.at(i, j) - truth.matrix.at(i, j);
+      const double off = factors.matrix->at(i, j) - truth.matrix->at(i, j);
       square += off * off;
     }
     fmt::print("row {} {} {} {}\n", tolerance, std::sqrt(square), factors.error[i],

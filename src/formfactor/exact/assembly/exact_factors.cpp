@@ -60,8 +60,8 @@ struct RowStore {
   /// `emitting`: unknowns.
   RowStore(const PatchMesh& mesh, const ExactScene& scene, const FormFactorOptions& options,
            std::span<const Index> emitting, const std::shared_ptr<ScratchMemory>& scratch)
-      : matrix(ExchangeMatrix::symmetric(mesh.area, scene.order.patch, options.storedPrecision(),
-                                         scratch)),
+      : matrix(std::make_shared<SymmetricMatrix>(mesh.area, scene.order.patch,
+                                                 options.storedPrecision(), scratch)),
         backs(mesh.size(), 0.0),
         seen_backs(mesh.size()),
         enforces(options.closure == ClosureMode::enforce),
@@ -79,13 +79,13 @@ struct RowStore {
             progress,
             recheck_every,
             emitters ? &*emitters : nullptr,
-            matrix,
+            *matrix,
             enforces ? &uncertain : nullptr,
             backs,
             seen_backs};
   }
 
-  ExchangeMatrix matrix;
+  std::shared_ptr<SymmetricMatrix> matrix;
   std::vector<double> backs;
   std::vector<std::vector<SeenBack>> seen_backs;
   bool enforces;
@@ -186,7 +186,7 @@ void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_for
 /// closed row misses, or any row has beyond 1, is its error.
 void setAccounts(const PatchMesh& mesh, const PatchOrder& order, double tolerance,
                  ClosedRows& closed, FormFactors& result) {
-  result.fronts = result.matrix.rowSums();
+  result.fronts = result.matrix->rowSums();
   for (std::size_t k = 0; k < order.ranked; ++k) {
     const Index i = order.patch[k];
     const double rest = 1 - result.fronts[i] - result.backs[i];
@@ -218,8 +218,8 @@ void findUnexplained(const PatchMesh& mesh, const PatchOrder& order, double clos
   }
   if (rows == 0) return;
   FormFactorReport& report = result.report;
-  report.error_figure =
-      std::hypot(report.error_figure, std::sqrt(squares / weightedSquares(result.matrix)));
+  report.error_figure = std::hypot(report.error_figure,
+                                   std::sqrt(squares / weightedSquares(pairsOf(*result.matrix))));
   report.notes.push_back(
       {Severity::warning,
        fmt::format("{} {} off a sum of 1 by up to {:.2g}, more than errors of integration explain: "
@@ -231,8 +231,8 @@ void findUnexplained(const PatchMesh& mesh, const PatchOrder& order, double clos
 
 /// Reports how far closed rows are from 1 and, if asked to, puts the difference on the occluded
 /// pairs.
-void close(const PatchOrder& order, const ClosedRows& closed, const UncertainEntries& uncertain,
-           ClosureMode mode, FormFactors& result, Progress& progress) {
+void close(const PatchOrder& order, const ClosedRows& closed, RowStore& rows, ClosureMode mode,
+           FormFactors& result, Progress& progress) {
   std::vector<double> target = result.fronts;
   for (std::size_t k = 0; k < order.ranked; ++k) {
     const Index i = order.patch[k];
@@ -241,8 +241,8 @@ void close(const PatchOrder& order, const ClosedRows& closed, const UncertainEnt
   FormFactorReport& report = result.report;
   report.closure_enforced = mode == ClosureMode::enforce;
   if (report.closure_enforced) {
-    report.closure = closeRows(result.matrix, uncertain, target, progress);
-    result.fronts = result.matrix.rowSums();
+    report.closure = closeRows(*rows.matrix, rows.uncertain, target, progress);
+    result.fronts = rows.matrix->rowSums();
     closed.balance(result);
   } else {
     report.closure = reportClosure(result.fronts, target);
@@ -314,10 +314,10 @@ FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* jou
   const RowSums sums = fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks,
                                 journal, processes, progress);
   const auto check = [&] { progress.check(); };
-  if (processes != nullptr) evenOut(*processes, rows.matrix, check);
-  result.matrix = processes == nullptr ? std::move(rows.matrix)
-                                       : ExchangeMatrix::shared(std::make_shared<SharedRows>(
-                                             *processes, std::move(rows.matrix), check));
+  if (processes != nullptr) evenOut(*processes, *rows.matrix, check);
+  result.matrix = processes == nullptr
+                      ? std::shared_ptr<const ExchangeMatrix>(rows.matrix)
+                      : std::make_shared<SharedRows>(*processes, rows.matrix, check);
   result.backs = std::move(rows.backs);
   result.sky.assign(n, 0.0);
   const Stopwatch finishing;
@@ -328,7 +328,7 @@ FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* jou
   setAccounts(mesh(), scene.order, tolerance(), closed, result);
   findUnexplained(mesh(), scene.order, kernels.closed_form, result);
   if (closed.any() && options().closure != ClosureMode::off) {
-    close(scene.order, closed, rows.uncertain, options().closure, result, progress);
+    close(scene.order, closed, rows, options().closure, result, progress);
   }
   progress.begin("finishing", 1);
   accountForBacks(mesh(), canonicalOrder(mesh()), mesh().area, rows.seen_backs, result);
@@ -347,8 +347,10 @@ std::unique_ptr<PreparedMethod> prepareExact(const PatchMesh& mesh,
   return std::make_unique<Exact>(mesh, options);
 }
 
-ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
-                                  Processes& processes, Progress& progress, RowJournal* journal) {
+std::shared_ptr<const ExchangeMatrix> exactRowsForOthers(const PatchMesh& mesh,
+                                                         const FormFactorOptions& options,
+                                                         Processes& processes, Progress& progress,
+                                                         RowJournal* journal) {
   const ExactScene scene(mesh, progress);
   const ExactKernels kernels(scene, options);
   std::size_t recheck_every = 1;
@@ -358,8 +360,8 @@ ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions
   RowStore rows(mesh, scene, options, emitting, nullptr);
   fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks, journal, &processes,
            progress);
-  evenOut(processes, rows.matrix, {});
-  return std::move(rows.matrix);
+  evenOut(processes, *rows.matrix, {});
+  return rows.matrix;
 }
 
 }  // namespace radiosity

@@ -8,7 +8,9 @@ namespace radiosity {
 std::unique_ptr<PreparedMethod> prepareExact(const PatchMesh& mesh,
                                              const FormFactorOptions& options);
 
-ExchangeMatrix exactRowsForOthers(const PatchMesh& mesh, const FormFactorOptions& options,
-                                  Processes& processes, Progress& progress, RowJournal* journal);
+std::shared_ptr<const ExchangeMatrix> exactRowsForOthers(const PatchMesh& mesh,
+                                                         const FormFactorOptions& options,
+                                                         Processes& processes, Progress& progress,
+                                                         RowJournal* journal);
 
 }  // namespace radiosity

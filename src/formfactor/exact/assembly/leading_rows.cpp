@@ -19,12 +19,12 @@ namespace radiosity {
 /// Rows of the triangle between patches.
 struct LeadingRows::Triangle {
   Triangle(const PatchMesh& mesh, const PatchOrder& order)
-      : matrix(ExchangeMatrix::symmetric(mesh.area, order.patch, Precision::double_precision)),
+      : matrix(mesh.area, order.patch, Precision::double_precision),
         uncertain(mesh.size()),
         backs(mesh.size(), 0.0),
         seen_backs(mesh.size()) {}
 
-  ExchangeMatrix matrix;
+  SymmetricMatrix matrix;
   UncertainEntries uncertain;
   std::vector<double> backs;
   std::vector<std::vector<SeenBack>> seen_backs;

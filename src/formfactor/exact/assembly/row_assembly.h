@@ -14,7 +14,7 @@
 #include "formfactor/exact/visibility/visibility.h"
 #include "formfactor/row_accounts.h"
 #include "radiosity/closure.h"
-#include "radiosity/exchange_matrix.h"
+#include "radiosity/symmetric_matrix.h"
 #include "visibility/elements/elements.h"
 
 namespace radiosity {
@@ -64,7 +64,7 @@ struct RowContext {
   const Progress& progress;
   std::size_t recheck_every;  ///< about one occluded pair in this many is evaluated again
   const Emitters* emitters;   ///< may be null
-  ExchangeMatrix& matrix;
+  SymmetricMatrix& matrix;
   UncertainEntries* uncertain;  ///< takes occluded pairs and their errors; may be null
   std::vector<double>& backs;
   std::vector<std::vector<SeenBack>>& seen_backs;

@@ -9,7 +9,7 @@ namespace radiosity {
 
 /// A row as it comes out of the journal.
 struct TaskJournal::Row {
-  std::vector<double> factors;  ///< as for ExchangeMatrix::setUpperRow()
+  std::vector<double> factors;  ///< as for SymmetricMatrix::setUpperRow()
   std::vector<Index> later;     ///< as for UncertainEntries::setRow()
   std::vector<double> errors;
   double backs = 0;

@@ -1,4 +1,4 @@
-#include "formfactor/rays/patch_irradiance.h"
+#include "formfactor/patch_irradiance.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "formfactor/patch_seed.h"
 #include "formfactor/rays/cluster_features.h"
+#include "formfactor/rays/ray_caster.h"
 #include "mesh/clusters/cluster_means.h"
 
 namespace radiosity {
@@ -17,6 +18,17 @@ using Features = ClusterFeatures::Vector;
 using Square = ClusterFeatures::Square;
 
 }  // namespace
+
+struct PatchIrradiance::Rays {
+  explicit Rays(const PatchMesh& mesh)
+      : caster(mesh, RayItems::patches),
+        of_each(ClusterFeatures::rays(mesh.unknowns())),
+        ends(mesh.unknowns()) {}
+
+  RayCaster caster;
+  std::uint32_t of_each;              ///< of a cluster
+  std::vector<RayCaster::Ends> ends;  ///< by cluster
+};
 
 /// Sums over rays.
 struct PatchIrradiance::Fit {
@@ -73,15 +85,14 @@ struct PatchIrradiance::View {
 
 PatchIrradiance::PatchIrradiance(const PatchMesh& mesh, int bands, std::span<const double> sky)
     : mesh_(mesh),
-      caster_(mesh, RayItems::patches),
+      rays_(std::make_unique<Rays>(mesh)),
       bands_(std::size_t(bands)),
       sky_(bands_, 0.0),
       slopes_(slopesOf(mesh.unknowns()), 0.0),
       beyond_(mesh.unknowns() * bands_, 0.0) {
   for (std::size_t b = 0; b < sky.size(); ++b) sky_[b] = std::numbers::pi * sky[b];
-  rays_ = ClusterFeatures::rays(mesh.unknowns());
-  ends_.resize(mesh.unknowns());
 }
+PatchIrradiance::~PatchIrradiance() = default;
 
 void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress) {
   View view{{radiosity.begin(), radiosity.end()}, {radiosity.begin(), radiosity.end()}};
@@ -89,7 +100,7 @@ void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress
       patchValues(mesh_, clusterMeans(mesh_, radiosity, int(bands_)), int(bands_));
   for (std::size_t k = 0; k < means.size(); ++k) view.beyond[k] -= means[k];
   for (std::vector<double>* of_item : {&view.radiosity, &view.beyond}) {
-    of_item->resize((caster_.items() + 1) * bands_, 0.0);  // backs are black
+    of_item->resize((rays_->caster.items() + 1) * bands_, 0.0);  // backs are black
   }
   std::copy(sky_.begin(), sky_.end(), view.radiosity.end() - std::ptrdiff_t(bands_));
   progress.begin("light within clusters", mesh_.unknowns());
@@ -104,15 +115,16 @@ void PatchIrradiance::look(std::span<const double> radiosity, Progress& progress
 
 void PatchIrradiance::lookFrom(std::size_t cluster, const View& view) {
   const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
-  const RayOrigins origins = caster_.origins(cluster);
+  const RayOrigins origins = rays_->caster.origins(cluster);
   if (origins.empty()) return;
-  const ClusterFeatures features(mesh_, caster_, origins.size());
+  const ClusterFeatures features(mesh_, rays_->caster, origins.size());
   Fit fit{int(bands_)};
-  caster_.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_, ends_[cluster],
-                    [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t item) {
-                      fit.add(features.at(from, normal), &view.radiosity[item * bands_],
-                              &view.beyond[item * bands_]);
-                    });
+  rays_->caster.visitEnds(origins, patchSeed(mesh_, patches[0], 0), rays_->of_each,
+                          rays_->ends[cluster],
+                          [&](const glm::vec3& from, const glm::vec3& normal, std::uint32_t item) {
+                            fit.add(features.at(from, normal), &view.radiosity[item * bands_],
+                                    &view.beyond[item * bands_]);
+                          });
   if (fit.rays == 0) return;
   for (std::size_t b = 0; b < bands_; ++b) {
     beyond_[cluster * bands_ + b] = fit.beyond[Eigen::Index(b)] / fit.rays;
@@ -131,12 +143,12 @@ std::vector<double> PatchIrradiance::around(std::span<const double> irradiance) 
 /// Adds the slopes within a cluster to its patches, which have its mean so far.
 void PatchIrradiance::addSlopes(std::size_t cluster, std::vector<double>& irradiance) const {
   const std::span<const Index> patches = made(mesh_.clusters).patchesOf(cluster);
-  const RayOrigins origins = caster_.origins(cluster);
+  const RayOrigins origins = rays_->caster.origins(cluster);
   if (patches.size() < 2 || origins.empty()) return;
   double area = 0;
   for (const Index i : patches) area += mesh_.area[i];
   if (!(area > 0)) return;
-  const ClusterFeatures features(mesh_, caster_, origins.size());
+  const ClusterFeatures features(mesh_, rays_->caster, origins.size());
   const Features middle = features.middleOf(patches);
   for (std::size_t b = 0; b < bands_; ++b) {
     const Eigen::Map<const Features> slopes(&slopes_[slopesOf(cluster) + b * kFeatures]);

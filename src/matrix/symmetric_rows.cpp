@@ -1,14 +1,13 @@
-// Assembles rows of the symmetric form from the triangle.
-#include "radiosity/row_panel.h"
+// Assembles rows from the triangle.
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/parallel.h"
 #include "matrix/make_room.h"
 #include "matrix/run_row.h"
-#include "matrix/shared_rows.h"
 #include "matrix/sort_entries.h"
 #include "matrix/working_memory.h"
+#include "radiosity/symmetric_matrix.h"
 
 namespace radiosity {
 
@@ -24,7 +23,7 @@ constexpr std::size_t kSortedBlocks = 32;
 /// that are neighbours by position are gathered together: they read neighbouring values.
 class Gathering {
  public:
-  Gathering(const ExchangeMatrix& matrix, std::span<const Index> position, std::size_t first,
+  Gathering(const SymmetricMatrix& matrix, std::span<const Index> position, std::size_t first,
             std::size_t last)
       : matrix_(matrix) {
     rows_.reserve(last - first);
@@ -133,56 +132,28 @@ class Gathering {
     }
   }
 
-  const ExchangeMatrix& matrix_;
+  const SymmetricMatrix& matrix_;
   std::vector<Row> rows_;  // by position
 };
 
 }  // namespace
 
-RowPanel::RowPanel(const ExchangeMatrix& matrix, std::size_t first, std::size_t last)
-    : matrix_(&matrix) {
-  read(first, last);
-}
-
-void RowPanel::read(std::size_t first, std::size_t last, std::span<const Index> entries) {
-  first_ = first;
-  last_ = last;
-  if (matrix_->sharedRows() != nullptr) {
-    matrix_->sharedRows()->panel(first, last, starts_, columns_, values_);
-    return;
-  }
-  if (!matrix_->isSymmetric()) return;
-  const Gathering gathering(*matrix_, matrix_->position_, first, last);
+void SymmetricMatrix::readRows(std::size_t first, std::size_t last, std::span<const Index> entries,
+                               CompressedRows& rows) const {
+  const Gathering gathering(*this, position_, first, last);
   std::vector<Index> counted;
   if (entries.empty()) counted = gathering.countEntries();
   const auto counts =
       entries.empty() ? std::span<const Index>(counted) : entries.subspan(first, last - first);
-  starts_.assign(1, 0);
-  for (const Index count : counts) starts_.push_back(starts_.back() + count);
-  makeRoom(columns_, starts_.back());
-  makeRoom(values_, starts_.back());
-  gathering.run(starts_, columns_, values_);
+  rows.starts.assign(1, 0);
+  for (const Index count : counts) rows.starts.push_back(rows.starts.back() + count);
+  makeRoom(rows.columns, rows.starts.back());
+  makeRoom(rows.values, rows.starts.back());
+  gathering.run(rows.starts, rows.columns, rows.values);
 }
 
-ExchangeMatrix::Panels ExchangeMatrix::panels() const {
-  Panels all;
-  if (size() == 0) return all;
-  if (symmetric_ || shared_) {
-    all.entries = rowEntries();
-    // A panel of shared rows must not be larger than the share of a process.
-    const std::size_t share = shared_ ? std::size_t(shared_->processes()) : 1;
-    const std::size_t most = panelBytes(bytes() / share) / RowPanel::kEntryBytes;
-    std::size_t held = 0;
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (held > 0 && held + all.entries[i] > most) {
-        all.ends.push_back(i);
-        held = 0;
-      }
-      held += all.entries[i];
-    }
-  }
-  all.ends.push_back(size());
-  return all;
+std::size_t SymmetricMatrix::panelEntries() const {
+  return panelBytes(bytes()) / RowPanel::kEntryBytes;
 }
 
 }  // namespace radiosity

@@ -1,12 +1,12 @@
 // Light within clusters, of which the solution has the means alone.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "formfactor/rays/ray_caster.h"
 #include "radiosity/base.h"
 #include "radiosity/patch_mesh.h"
 
@@ -20,6 +20,7 @@ class PatchIrradiance {
  public:
   /// `mesh` is kept by reference and has clusters. `sky`: radiance a band, or empty.
   PatchIrradiance(const PatchMesh& mesh, int bands, std::span<const double> sky);
+  ~PatchIrradiance();
 
   /// Looks at patches of this radiosity, N * bands, row-major, W/m^2. The first look traces rays
   /// and keeps the items they end on, 4 bytes a ray, some 64 MiB, for later looks. Throws
@@ -40,6 +41,7 @@ class PatchIrradiance {
  private:
   /// Place and normal.
   static constexpr int kFeatures = 6;
+  struct Rays;
   struct Fit;
   struct View;
 
@@ -48,12 +50,10 @@ class PatchIrradiance {
   void addSlopes(std::size_t cluster, std::vector<double>& irradiance) const;
 
   const PatchMesh& mesh_;
-  RayCaster caster_;
+  std::unique_ptr<Rays> rays_;
   std::size_t bands_;
-  std::vector<double> sky_;  ///< pi times its radiance
-  std::uint32_t rays_ = 0;
-  std::vector<RayCaster::Ends> ends_;  ///< by cluster
-  std::vector<double> slopes_;         ///< K * bands * kFeatures
+  std::vector<double> sky_;     ///< pi times its radiance
+  std::vector<double> slopes_;  ///< K * bands * kFeatures
   std::vector<double> beyond_;
 };
 
