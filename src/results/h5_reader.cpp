@@ -30,6 +30,7 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   H5Pset_file_locking(access.get(), false, true);
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (!file_) {
+    silence_.keepForGood();
     throw InputError(fmt::format("{}: is truncated or damaged ({}); {}", path, lastError(), kCure));
   }
 }

@@ -12,7 +12,7 @@ import unittest
 
 import h5py
 
-from cli_runner import PROGRAM, SMALL, CliTest
+from cli_runner import DATA, PROGRAM, SMALL, CliTest
 
 # Every subcommand that writes, and what it writes.
 WRITES = [("mesh", "box.obj", "m.obj"), ("mesh", "box.obj", "m.h5"), ("factors", "box.obj", "f.mtx"),
@@ -197,6 +197,12 @@ class ForeignFiles(CliTest):
                               (nan_account, "/form_factors/sky holds nan at 0")):
             self.damaged(change)
             self.refuse_all(words)
+
+    def test_what_hdf5_cannot_even_open_gets_one_line(self):
+        # Fuzzed: a block of 1 TB. The library said more when the process ended.
+        found = DATA.parent / "tests/fuzz/corpus/h5/c06e0f7fd3ae"
+        (self.folder / "s.h5").write_bytes(found.read_bytes())
+        self.refuse("info", "s.h5", words=["s.h5: is truncated or damaged"])
 
     def test_moved_vertices_do_not_keep_their_form_factors(self):
         def move(file):

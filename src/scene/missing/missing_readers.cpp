@@ -1,0 +1,33 @@
+// In place of the readers that take packages, where the core is built alone (RADIOSITY_FILES=OFF).
+#include <fmt/format.h>
+
+#include "base/file_name.h"
+#include "scene/json_scan.h"
+#include "scene/readers.h"
+
+namespace radiosity {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path) {
+  throw InputError(
+      fmt::format("{}: {} is not read by this build, which is the core alone; build with "
+                  "-DRADIOSITY_FILES=ON, or export the scene as .obj",
+                  path, lowerExtension(path)));
+}
+
+}  // namespace
+
+Scene loadGltf(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
+Scene loadVtk(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
+Scene loadVtkXml(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
+Scene load3mf(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
+Scene loadAssimp(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
+
+void scanJson(const std::string& file, std::string_view /*text*/,
+              const std::function<void(std::span<const JsonStep>, const JsonValue&)>& /*visit*/) {
+  throw InputError(file +
+                   ": JSON is not read by this build, which is the core alone; build with "
+                   "-DRADIOSITY_FILES=ON");
+}
+
+}  // namespace radiosity
