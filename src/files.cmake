@@ -129,6 +129,7 @@ else()
   message(STATUS "No Python package (import radiosity): RADIOSITY_PYTHON is OFF")
 endif()
 
+set_property(GLOBAL APPEND PROPERTY public_headers include/radiosity/radiosity.h)  # all together
 install(TARGETS radiosity_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 set_target_properties(radiosity_cli PROPERTIES
                       INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")

@@ -19,6 +19,12 @@ bool isSupportedGltfExtension(const std::string& name);
 /// file that requires one that we do not read can be read without it.
 bool leavesGeometry(const std::string& name);
 
+/// A member of a value of an extension; null where the value is no object or has none so called.
+inline const tinygltf::Value& memberOf(const tinygltf::Value& value, const std::string& key) {
+  static const tinygltf::Value kNull;
+  return value.IsObject() ? value.Get(key) : kNull;
+}
+
 struct GltfFile {
   std::string path;
   tinygltf::Model model;

@@ -109,7 +109,7 @@ GltfMaterialReader::Diffuse GltfMaterialReader::diffuseOf(const tinygltf::Materi
     for (int b = 0; b < 3; ++b) diffuse.factor[b] = pbr.baseColorFactor[std::size_t(b)];
     return diffuse;
   }
-  const tinygltf::Value& factor = extension->second.Get("diffuseFactor");
+  const tinygltf::Value& factor = memberOf(extension->second, "diffuseFactor");
   if (factor.IsArray()) {
     if (factor.ArrayLen() < 3) {
       file_.fail(fmt::format("material {}: diffuseFactor is not 4 numbers; correct it", name));
@@ -117,11 +117,11 @@ GltfMaterialReader::Diffuse GltfMaterialReader::diffuseOf(const tinygltf::Materi
     for (int b = 0; b < 3; ++b) diffuse.factor[b] = factor.Get(b).GetNumberAsDouble();
   }
   diffuse.texture = {};
-  const tinygltf::Value& texture = extension->second.Get("diffuseTexture");
+  const tinygltf::Value& texture = memberOf(extension->second, "diffuseTexture");
   if (!texture.IsObject()) return diffuse;
   diffuse.texture.index = texture.Get("index").GetNumberAsInt();
   if (texture.Has("texCoord")) diffuse.texture.texCoord = texture.Get("texCoord").GetNumberAsInt();
-  const tinygltf::Value& transform = texture.Get("extensions").Get(kTextureTransform);
+  const tinygltf::Value& transform = memberOf(texture.Get("extensions"), kTextureTransform);
   if (transform.IsObject()) diffuse.texture.extensions[kTextureTransform] = transform;
   return diffuse;
 }

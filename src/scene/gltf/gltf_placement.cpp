@@ -30,7 +30,7 @@ std::vector<glm::dmat4> GltfPlacement::copiesInNode(int number, const std::strin
   const tinygltf::Node& node = file_.model.nodes[std::size_t(number)];
   const auto extension = node.extensions.find(kGltfInstancing);
   if (extension == node.extensions.end()) return {};
-  const tinygltf::Value& attributes = extension->second.Get("attributes");
+  const tinygltf::Value& attributes = memberOf(extension->second, "attributes");
   std::size_t count = 0;
   const auto read = [&](const char* name, int components) -> std::vector<double> {
     if (!attributes.Has(name)) return {};
