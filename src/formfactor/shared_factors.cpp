@@ -1,5 +1,7 @@
 #include "formfactor/shared_factors.h"
 
+#include <fmt/format.h>
+
 #include <type_traits>
 
 #include "base/hash.h"

@@ -2,6 +2,7 @@
 #include "radiosity/symmetric_matrix.h"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +11,9 @@
 #include <limits>
 #include <utility>
 
+#include "base/parallel.h"
 #include "base/scratch_rows.h"
+#include "matrix/own_rows.h"
 #include "matrix/run_row.h"
 
 namespace radiosity {
