@@ -38,9 +38,8 @@ struct MethodTraits {
   double imbalance = std::numeric_limits<double>::infinity();
   std::string (*cure)() = [] { return std::string(); };
 
-  constexpr bool uses(std::string_view option) const {
-    return std::find(options.begin(), options.end(), option) != options.end();
-  }
+  /// What no method names is for all, and `automatic` may come to use any.
+  constexpr bool uses(std::string_view option) const;
 };
 
 inline std::string cureOfMatrix() {
@@ -50,9 +49,7 @@ inline std::string cureOfMatrix() {
 inline constexpr std::array kMethods{
     MethodTraits{.method = FormFactorMethod::automatic,
                  .word = "auto",
-                 .summary = "exact or rays, by what a sample of rows takes; the report says why",
-                 .options = {"tolerance", "closure", "seed", "resolution", "symmetrize", "near",
-                             "random-turns", "eye"}},
+                 .summary = "exact or rays, by what a sample of rows takes; the report says why"},
     // Rows are off 1 by rounding and tolerance, and bright rooms multiply that.
     MethodTraits{.method = FormFactorMethod::exact,
                  .word = "exact",
@@ -92,6 +89,14 @@ inline constexpr std::array kMethods{
                      }},
     MethodTraits{.method = FormFactorMethod::matrix, .word = "matrix", .cure = cureOfMatrix},
     MethodTraits{.method = FormFactorMethod::file, .word = "file", .cure = cureOfMatrix}};
+
+constexpr bool MethodTraits::uses(std::string_view option) const {
+  const auto names = [option](const MethodTraits& one) {
+    return std::find(one.options.begin(), one.options.end(), option) != one.options.end();
+  };
+  return method == FormFactorMethod::automatic || names(*this) ||
+         std::none_of(kMethods.begin(), kMethods.end(), names);
+}
 
 /// The methods that `automatic` chooses from, the most accurate one first.
 inline constexpr std::array kAutomaticChoices{FormFactorMethod::exact, FormFactorMethod::rays};

@@ -99,8 +99,11 @@ struct FormFactorOptions {
   void validate() const;
 
   /// A line an option (option_line.h).
-  static void describe(auto& list, auto& o) {
-    const auto uses = [&o](const char* option) { return traitsOf(o.method).uses(option); };
+  static void describe(auto& lines, auto& o) {
+    const auto list = [&](OptionLine line, auto& value, const OptionRange& range = {}) {
+      line.used = traitsOf(o.method).uses(line.optionName());
+      lines(line, value, range);
+    };
     list({.name = "method",
           .value = "METHOD",
           .help = "How form factors are computed (default auto: exact or rays, by what a sample of "
@@ -112,7 +115,6 @@ struct FormFactorOptions {
                   "1/N (default {:g}); rays: relative error of a row, L2 (default {:g}, or what "
                   "{:g} million rays reach)",
           .figures = {kExactTolerance, kRayTolerance, 1e-6 * kMostRaysUnasked},
-          .used = uses("tolerance"),
           .unset = o.sources_only ? "sources" : "default"},
          o.tolerance, {.from = 1e-12, .to = 0.1});
     list(
@@ -120,40 +122,32 @@ struct FormFactorOptions {
          .value = "off|report|enforce",
          .help = "In a closed scene say how far row sums are from 1 (report, default), or make "
                  "them 1 by the smallest change to occluded pairs (enforce); rays: rows are closed "
-                 "unless off",
-         .used = uses("closure")},
+                 "unless off"},
         o.closure);
-    list({.name = "seed",
-          .help = "rays: seed of their directions; hemicube: of the random turns",
-          .used = uses("seed")},
+    list({.name = "seed", .help = "rays: seed of their directions; hemicube: of the random turns"},
          o.seed);
     list({.name = "resolution",
           .value = "PIXELS",
           .unit = "pixels",
-          .help = "hemicube: edge of the top face",
-          .used = uses("resolution")},
+          .help = "hemicube: edge of the top face"},
          o.resolution, {.from = 16, .to = 4096, .only = OptionRange::Only::even});
     list({.name = "symmetrize",
           .help = "hemicube: merge both estimates of each pair (A_i F_ij = A_j F_ji), then restore "
-                  "the row sums",
-          .used = uses("symmetrize")},
+                  "the row sums"},
          o.symmetrize);
     list({.name = "near_exact",
           .option = "near",
           .value = "exact|off",
           .help = "hemicube: area-to-area values times the visible fraction for pairs closer than "
                   "about two patch sizes",
-          .used = uses("near"),
           .on = "exact"},
          o.near_exact);
-    list({.name = "random_turns", .used = uses("random-turns"), .in_key = InKey::if_changed},
-         o.random_turns);
+    list({.name = "random_turns", .in_key = InKey::if_changed}, o.random_turns);
     list({.name = "eye",
           .value = "cpu|gl|auto",
           .help = "hemicubes are drawn by the processor (cpu, default: the same bits on every "
                   "machine), by OpenGL (gl; radiosity info --devices lists what can), or by OpenGL "
                   "where there is hardware for it (auto)",
-          .used = uses("eye"),
           .in_key = InKey::if_changed},
          o.eye);
     list({.name = "exact_emitters",
