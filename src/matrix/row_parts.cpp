@@ -91,8 +91,9 @@ void mergeParts(std::span<const RowsPart> parts, std::size_t n, CompressedRows& 
     std::size_t at = rows.starts[row];
     for (std::size_t p = 0; p < parts.size(); ++p) {
       const std::size_t entries = parts[p].counts[row];
-      std::copy_n(&parts[p].columns[from[p * count + row]], entries, &rows.columns[at]);
-      std::copy_n(&parts[p].values[from[p * count + row]], entries, &rows.values[at]);
+      const std::size_t first = from[p * count + row];
+      std::copy_n(parts[p].columns.data() + first, entries, rows.columns.data() + at);
+      std::copy_n(parts[p].values.data() + first, entries, rows.values.data() + at);
       at += entries;
     }
     const std::size_t entries = at - rows.starts[row];
