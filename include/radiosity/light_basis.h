@@ -17,11 +17,11 @@ namespace [[gnu::visibility("default")]] radiosity {
 struct LightSource {
   std::string name;
   std::vector<double> emission;  ///< N * bands, row-major, radiant exitance, W/m^2
-  std::vector<double> sky;       ///< radiance a band, W/m^2/sr; empty: dark
+  std::vector<Light> lights;     ///< without a surface
 };
 
-/// A source for each emitting surface, by its name, and one called "sky" if the sky shines. They
-/// add up to the light of the scene.
+/// A source for each emitting surface, by its name, and for each light without a surface ("sky"),
+/// as far as they shine. They add up to the light of the scene.
 std::vector<LightSource> lightSources(const PatchMaterials& materials, const PatchMesh& mesh);
 
 /// Reads sources from a table (RFC 4180) with the columns `set`, `name` and `emission` (radiant

@@ -244,7 +244,7 @@ struct PatchMaterials {
   int bands = 3;                    ///< 1 or more
   std::vector<double> reflectance;  ///< N * bands, row-major, 0 to 1
   std::vector<double> emission;     ///< N * bands, exitance, W/m^2
-  std::vector<double> sky;          ///< bands: radiance of the sky, W/m^2/sr; empty: dark
+  std::vector<Light> lights;        ///< without a surface, with a strength for each band
 
   /// Errors: InputError naming the array whose size is not that of `patches` patches, and the size
   /// it should have.
@@ -252,7 +252,7 @@ struct PatchMaterials {
 };
 
 /// The scene's materials: linear Rec. 709 red, green and blue, textures averaged over the patch's
-/// area, and Scene::sky.
+/// area, and Scene::lights.
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 
 /// The unknowns, ascending, with a patch that emits in some band. Errors as requireSizes().

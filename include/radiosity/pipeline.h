@@ -128,10 +128,10 @@ class Pipeline {
 
   /// Opens a scene file, or a results file (.h5), whose stages are then reused and whose options
   /// are in options(). `scene`: for a results file the overrides alone (set, materials_file,
-  /// one_sided, two_sided, flip, without, sky). `reuse`: with a scene file, the results file whose
-  /// stages are reused if they fit the scene and options(), as a rule the one that save() will
-  /// write; it need not exist. Errors: InputError if a file cannot be read; with a results file
-  /// also if it has no scene, if `scene` has options for reading a scene file (unit), or if
+  /// one_sided, two_sided, flip, without, lights). `reuse`: with a scene file, the results file
+  /// whose stages are reused if they fit the scene and options(), as a rule the one that save()
+  /// will write; it need not exist. Errors: InputError if a file cannot be read; with a results
+  /// file also if it has no scene, if `scene` has options for reading a scene file (unit), or if
   /// `scene` has overrides and the file has materials of its own (bands()).
   void open(const std::string& path, const SceneOptions& scene = {}, const std::string& reuse = {});
   /// Opens a scene in memory that passes validate(const Scene&); `reuse` as above.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/light.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -84,8 +85,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Camera> cameras;
-  /// Radiance from every direction without a surface, W/m^2/sr.
-  Vec3 sky{0.0};
+  /// Those without a surface, of other names each; strengths are red, green and blue.
+  std::vector<Light> lights{uniformSky({0, 0, 0})};
   Up up = Up::y;
   std::string unit = "m";  ///< the file's unit before conversion: mm, cm, m, in, ft
   std::vector<Note> notes;
@@ -132,7 +133,7 @@ struct SceneOptions {
   std::vector<std::string> two_sided;  ///< applied after one_sided
   std::vector<std::string> flip;       ///< their faces are turned over
   std::vector<std::string> without;    ///< their faces are left out
-  std::optional<Vec3> sky;             ///< replaces Scene::sky; finite, >= 0
+  std::vector<Light> lights;           ///< each replaces that of its name in Scene::lights
   std::optional<Up> up;                ///< replaces Scene::up, which depends on the format
   /// Throws InputError naming the option and its range.
   void validate() const;
@@ -153,10 +154,10 @@ std::string sceneExtensions();
 /// cure; RunError if the scene does not fit into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `flip`, `without`, `sky`, `up` to a
-/// scene already in memory (one that came back from a results file). NAME is a surface, material or
-/// object, tried in that order, but the material comes first if a surface has its name only because
-/// its object has it too. If nothing is called so, "all" is every surface, and a pattern
+/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `flip`, `without`, `lights`, `up` to
+/// a scene already in memory (one that came back from a results file). NAME is a surface, material
+/// or object, tried in that order, but the material comes first if a surface has its name only
+/// because its object has it too. If nothing is called so, "all" is every surface, and a pattern
 /// (src/base/name_pattern.h) every surface that it matches by its own name, its object's or its
 /// material's. PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (a
 /// factor of the reflectance); VALUE is one number or three with commas. Reflectance and emission

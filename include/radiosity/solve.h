@@ -79,7 +79,7 @@ enum class SolveStatus {
 /// reciprocity of F and from the residual and is 0 for an exact F and B.
 struct EnergyAccount {
   std::vector<double> emitted;
-  std::vector<double> from_sky;  ///< falls on the patches from the sky
+  std::vector<double> from_sky;  ///< falls on the patches from the sky and other lights
   std::vector<double> absorbed;
   std::vector<double> to_sky;
   std::vector<double> on_backs;

@@ -50,7 +50,9 @@ void noteLightOptions(Session& session, bool materials_are_used) {
     if (!scene.set.empty()) unused.emplace_back("--set");
     if (!scene.materials_file.empty()) unused.emplace_back("--materials");
   }
-  if (scene.sky) unused.emplace_back("--sky (heat has --sky-temperature)");
+  for (const Light& light : scene.lights) {
+    unused.push_back("--" + light.name + " (heat has --sky-temperature)");
+  }
   for (const std::string& name : session.request.reading_options) {
     if (name != "--unit" && !materials_are_used) unused.push_back(name);
   }

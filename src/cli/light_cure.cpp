@@ -49,9 +49,9 @@ std::string darknessText(const Request& request, const Scene& scene, int bands) 
         "of {}",
         request.input);
   }
-  const char* why = scene.sky == Vec3(0.0)
-                        ? "nothing emits light"
-                        : "nothing emits light and no patch sees the sky (the scene is closed)";
+  const char* why = anyShines(scene.lights)
+                        ? "nothing emits light and no patch sees the sky (the scene is closed)"
+                        : "nothing emits light";
   return fmt::format("{}, so B = 0 everywhere; {}", why, lightCure(request, scene));
 }
 

@@ -26,11 +26,11 @@ std::vector<LightWeight> parseMix(const std::string& text) {
   return weights;
 }
 
-/// The given option that changes the emission of materials; null if there is none.
-const char* overrideOf(const SceneOptions& scene) {
+/// The given option that changes the light of the scene; empty if there is none.
+std::string overrideOf(const SceneOptions& scene) {
   if (!scene.set.empty()) return "--set";
   if (!scene.materials_file.empty()) return "--materials";
-  return scene.sky ? "--sky" : nullptr;
+  return scene.lights.empty() ? "" : "--" + scene.lights.front().name;
 }
 
 [[noreturn]] void failWithoutBasis(const Request& request) {
@@ -46,7 +46,8 @@ void checkMix(const Request& request, const OutputSet& files) {
   if (request.mix.empty()) return;
   parseMix(request.mix);
   if (request.basis.empty()) {
-    if (const char* given = overrideOf(request.scene)) {
+    const std::string given = overrideOf(request.scene);
+    if (!given.empty()) {
       throw InputError(
           fmt::format("--mix: mixes light as it was solved for, and {} changes what is "
                       "solved; leave it out, or add --basis surfaces to solve again",

@@ -36,7 +36,6 @@ void refuseSceneOptions(const Request& request) {
       {"--two-sided", !request.scene.two_sided.empty()},
       {"--flip", !request.scene.flip.empty()},
       {"--without", !request.scene.without.empty()},
-      {"--sky", request.scene.sky.has_value()},
       {"--elements", request.elements.has_value()},
       {"--basis", !request.basis.empty()},
       {"--mix", !request.mix.empty()},
@@ -48,6 +47,7 @@ void refuseSceneOptions(const Request& request) {
   for (const auto& [name, given] : of_scenes) {
     if (given) refuse(name);
   }
+  if (!request.scene.lights.empty()) refuse("--" + request.scene.lights.front().name);
   if (!request.reading_options.empty()) refuse(request.reading_options.front());
   const std::string of_stages =
       request.given.firstOf({"patches", "max-edge", "method", "tolerance", "closure"});

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include "base/parse.h"
@@ -22,6 +24,23 @@ double parseReflectance(const std::string& text) {
   return *value;
 }
 
+/// `kind`: a light as it is by default.
+void addLightOption(CLI::App& app, Request& r, const Light& kind) {
+  const std::string name = "--" + kind.name;
+  const auto take = [&r, name, word = kind.name](const std::string& text) {
+    nameOption(name, [&] {
+      const Light light = lightOf(word, text);
+      light.validate();
+      setLight(r.scene.lights, light);
+    });
+  };
+  std::string value = kind.traits().strength;
+  std::ranges::transform(value, value.begin(), [](unsigned char c) { return std::toupper(c); });
+  app.add_option_function<std::string>(name, take, kind.traits().help)
+      ->group("Scene")
+      ->option_text(value + kind.parametersText());
+}
+
 /// Options that also apply to the scene in a results file.
 void addOverrideOptions(CLI::App& app, Request& r) {
   add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
@@ -29,13 +48,7 @@ void addOverrideOptions(CLI::App& app, Request& r) {
       "reflectance (0 to 1), emission (exitance, W/m^2) or radiance (W/m^2/sr), which replace a "
       "texture, or tint, which keeps it and multiplies; one number or three (R,G,B). May be "
       "repeated");
-  app.add_option_function<std::string>(
-         "--sky", [&r](const std::string& text) { r.scene.sky = parseSky(text); },
-         "Light an open scene from every direction in which nothing stands, also from below: "
-         "radiance, W/m^2/sr; one number or R,G,B (default 0). Pictures show it, opaque, where "
-         "nothing is hit")
-      ->group("Scene")
-      ->option_text("RADIANCE");
+  for (const Light& kind : lightKinds()) addLightOption(app, r, kind);
   app.add_option_function<std::string>(
          "--up", [&r](const std::string& text) { r.scene.up = named(kUpNames, text); },
          "Axis that points up, for cameras that nobody gave: y or z (default: z in .stl, .3mf, "

@@ -82,6 +82,20 @@ void describeCameras(Report& report, const Scene& scene) {
 
 }  // namespace
 
+namespace {
+
+/// "W/m^2/sr" -> "W_per_m2_sr", for keys.
+std::string wordOfUnit(std::string unit) {
+  std::erase(unit, '^');
+  if (const std::size_t per = unit.find('/'); per != std::string::npos) {
+    unit.replace(per, 1, "_per_");
+  }
+  std::ranges::replace(unit, '/', '_');
+  return unit;
+}
+
+}  // namespace
+
 void describeScene(Report& report, const Scene& scene) {
   const SceneInfo info = inspectScene(scene);
   report.section("scene", "Scene");
@@ -107,7 +121,11 @@ void describeScene(Report& report, const Scene& scene) {
                     emits ? triple(s.emitted_power) : ""});
   }
   report.count("emitters", "emitting surfaces", emitters);
-  bands(report, "sky_W_per_m2_sr", "sky (R G B)", scene.sky, "W/m^2/sr");
+  for (const Light& light : scene.lights) {
+    const std::string unit = light.traits().unit;
+    report.bands(light.name + "_" + wordOfUnit(unit), light.name + " (R G B)", light.strength,
+                 unit);
+  }
   report.section("scene", "Surfaces");
   report.table("surfaces",
                {{"name", "surface", false},

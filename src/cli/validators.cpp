@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-
 #include "base/parse.h"
-#include "cli/request.h"
 
 namespace radiosity::cli {
 
@@ -31,19 +28,6 @@ const CLI::Validator& nonNegative() {
       },
       "");
   return kValidator;
-}
-
-Vec3 parseSky(const std::string& text) {
-  const std::optional<double> number = parseNumber(text);
-  const std::optional<Vec3> sky = number ? Vec3(*number) : parseTriple(text);
-  if (!sky) {
-    throw InputError(
-        fmt::format("--sky: '{}' is not one finite number or three with commas, W/m^2/sr", text));
-  }
-  SceneOptions options;
-  options.sky = sky;
-  nameOption("--sky", [&] { options.validate(); });
-  return *sky;
 }
 
 }  // namespace radiosity::cli

@@ -14,7 +14,4 @@ const CLI::Validator& wholeNumber();
 /// Accepts a number of 0 or more. CLI11's own validator prints all digits of the largest double.
 const CLI::Validator& nonNegative();
 
-/// The value of --sky: one number, or three with commas. Errors: InputError naming the option.
-Vec3 parseSky(const std::string& text);
-
 }  // namespace radiosity::cli

@@ -104,6 +104,7 @@ EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& material
       elements_(elements),
       occluders_(occluders),
       emitters_(emitters),
+      aimed_(aimedLights(materials.lights)),
       rays_(rays),
       tree_(bodiesOf(occluders)),
       kernels_(visibilityKernels(true)),
@@ -141,6 +142,8 @@ std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& 
     lights->kind = ElementLights::Kind::by_rays;
     lights->settled = true;
   }
+  const bool dark = lights->kind == ElementLights::Kind::dark;
+  if (dark && !aimed_.empty()) lights->kind = ElementLights::Kind::plain;
   return lights;
 }
 
@@ -240,6 +243,11 @@ void EmitterLight::thinOut(const ElementShape& shape, const Lights& from, Lights
 
 double EmitterLight::irradiance(const SurfacePoint& point, const ElementLights* lights,
                                 std::span<double> out) const {
+  for (const Light& light : aimed_) {
+    for (std::size_t b = 0; b < out.size(); ++b) {
+      out[b] += light.irradiance(b, {point.position, point.normal});
+    }
+  }
   const auto* of = static_cast<const Lights*>(lights);
   if (of == nullptr || of->kind == ElementLights::Kind::by_rays) return aimed(point, of, out);
   return clipped(point, *of, out);

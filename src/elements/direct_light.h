@@ -1,4 +1,5 @@
-// Light of the emitters at points, by exact clipping or by rays to points on the emitters.
+// Light of the emitters at points, by exact clipping or by rays to points on the emitters, and of
+// lights without a surface that rays do not find.
 #pragma once
 
 #include <array>
@@ -72,6 +73,7 @@ class EmitterLight : public FieldLight {
   const ElementSet& elements_;
   const OccluderSet* occluders_;
   const std::vector<Emitter>& emitters_;
+  std::vector<Light> aimed_;  ///< without a surface
   const PointRays& rays_;
   OccluderTree tree_;
   VisibilityKernels kernels_;

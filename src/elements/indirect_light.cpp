@@ -29,7 +29,9 @@ double total(std::span<const double> values) {
 
 void ReflectedLight::addSource(const RayEnd& end, std::span<double> sum) const {
   if (end.patch == RayEnd::kSky) {
-    for (std::size_t b = 0; b < sky_.size(); ++b) sum[b] += std::numbers::pi * sky_[b];
+    for (std::size_t b = 0; b < background_.size(); ++b) {
+      sum[b] += std::numbers::pi * background_[b];
+    }
   } else if (end.patch != RayEnd::kBlack) {
     sources_.add(end.patch, end.at, sum);
   }

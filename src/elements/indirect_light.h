@@ -1,4 +1,4 @@
-// Light from surfaces and the sky at points, by rays.
+// Light from surfaces and from where nothing stands at points, by rays.
 #pragma once
 
 #include <atomic>
@@ -21,8 +21,13 @@ class ReflectedLight : public FieldLight {
  public:
   /// Keeps all by reference.
   ReflectedLight(const ElementSurface& surface, const PointRays& rays, const HemisphereSet& set,
-                 const SourceMap& sources, std::span<const double> sky, std::uint64_t seed)
-      : surface_(surface), rays_(rays), set_(set), sources_(sources), sky_(sky), seed_(seed) {}
+                 const SourceMap& sources, std::span<const Light> lights, std::uint64_t seed)
+      : surface_(surface),
+        rays_(rays),
+        set_(set),
+        sources_(sources),
+        background_(background(lights, sources.bands())),
+        seed_(seed) {}
   /// Takes the set `more`, kept by reference, if the standard error of as many random rays would be
   /// more than `uneven` of their mean, or if the means of two halves are off by more than `apart`.
   void repeat(const HemisphereSet& more, double uneven, double apart) {
@@ -53,7 +58,7 @@ class ReflectedLight : public FieldLight {
   double uneven_ = 0;
   double apart_ = 0;
   const SourceMap& sources_;
-  std::span<const double> sky_;  ///< radiance a band, or empty
+  std::vector<double> background_;  ///< radiance a band, or empty
   std::uint64_t seed_;
   mutable std::atomic<std::size_t> repeated_ = 0;
 };

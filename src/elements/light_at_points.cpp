@@ -15,7 +15,8 @@ struct LightAtPoints::Inside {
     Rays(const LightSources& sources, const PatchMaterials& materials, std::size_t count,
          std::uint64_t seed)
         : set(count, seed),
-          light(sources.surface(), sources.rays(), set, sources.sources(), materials.sky, seed) {}
+          light(sources.surface(), sources.rays(), set, sources.sources(), materials.lights, seed) {
+    }
   };
 
   Inside(const PatchMesh& mesh_given, const PatchMaterials& materials,

@@ -184,8 +184,12 @@ void LightSources::take(const FieldSummary& field) {
 void LightSources::findDirect(bool keep_lights) {
   emitters_ = findEmitters(mesh_, elements_, materials_);
   report_.emitters = emitters_.size();
-  if (emitters_.empty() || emitters_.size() > kMostAimedEmitters) {
-    if (!emitters_.empty()) report_.direct = DirectLight::hemispheres;
+  const bool too_many = emitters_.size() > kMostAimedEmitters;
+  if (too_many) {
+    report_.direct = DirectLight::hemispheres;
+    emitters_.clear();
+  }
+  if (emitters_.empty() && aimedLights(materials_.lights).empty()) {
     direct_.field.elements.resize(surface_.roots.size());
     return;
   }
@@ -205,6 +209,7 @@ void LightSources::findDirect(bool keep_lights) {
   take(direct_);
   report_.direct_vertices = direct_.evaluated;
   report_.direct_by_rays = emitter_light_->byRays();
+  if (too_many) return;
   report_.direct = !clip                          ? DirectLight::rays
                    : emitter_light_->byRays() > 0 ? DirectLight::partly
                                                   : DirectLight::exact;
@@ -297,7 +302,7 @@ FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double to
   const int more_rays =
       shown_alone ? raysFor(4 * kTestedShare * corners(true), std::min(kMoreRays * rays, 4096)) : 0;
   std::optional<HemisphereSet> more;
-  ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.sky, options_.seed);
+  ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.lights, options_.seed);
   if (more_rays > rays) {
     light.repeat(more.emplace(std::size_t(more_rays), options_.seed), kUneven * options_.tolerance,
                  kApart * options_.tolerance);

@@ -29,6 +29,7 @@ class SourceMap {
     fill(materials, emission, light);
   }
 
+  int bands() const { return int(bands_); }
   /// Adds the light that leaves a patch at one of its points to `sum` (bands).
   void add(std::size_t patch, const Vec3& at, std::span<double> sum) const {
     const ElementRoots& roots = surface_.roots;

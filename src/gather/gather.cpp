@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include "base/made.h"
@@ -27,10 +26,12 @@ constexpr double kLargest = 1e30;
 
 void checkMaterials(const PatchMesh& mesh, const PatchMaterials& materials) {
   materials.requireSizes(mesh.size());
-  for (const double radiance : materials.sky) {
-    if (radiance >= 0 && radiance <= kLargest) continue;
-    throw InputError(
-        fmt::format("gather: sky radiance {} is not within 0 and {:g}", radiance, kLargest));
+  for (const Light& light : materials.lights) {
+    for (const double value : light.strength) {
+      if (value >= 0 && value <= kLargest) continue;
+      throw InputError(fmt::format("gather: {} {} {} is not within 0 and {:g}", light.name,
+                                   light.traits().strength, value, kLargest));
+    }
   }
   for (std::size_t k = 0; k < materials.reflectance.size(); ++k) {
     const double rho = materials.reflectance[k];
@@ -59,11 +60,11 @@ class Passes {
         seen_backs_(scene.size()),
         workers_([&] { return Gatherer(scene_, result_.radiosity); }) {
     if (eye != nullptr) gpu_.emplace(scene, std::move(eye));
-    result_.radiosity = scene.materials.emission;
+    result_.radiosity = scene.source;
     result_.irradiance.assign(bands_ * scene.size(), 0.0F);
     result_.backs.assign(scene.size(), 0.0F);
     result_.sky.assign(scene.size(), 0.0F);
-    next_ = scene.materials.emission;
+    next_ = scene.source;
   }
 
   GatherPass run(int number, Progress& progress) {
@@ -151,17 +152,16 @@ class Passes {
     result_.sky[k] = float(received.sky);
     for (std::size_t b = 0; b < bands_; ++b) {
       const std::size_t at = bands_ * k + b;
-      const double irradiance = received.irradiance[b] + fromSky(k, b);
+      const double irradiance = received.irradiance[b] + byLights(k, b);
       result_.irradiance[at] = float(irradiance);
       next_[at] = float(double(scene_.materials.emission[at]) +
                         double(scene_.materials.reflectance[at]) * irradiance);
     }
   }
 
-  /// Irradiance from the part of the view that ends on the sky, by Lambert's law. The eye must have
-  /// looked.
-  double fromSky(std::size_t k, std::size_t b) const {
-    return std::numbers::pi * scene_.sky[b] * result_.sky[k];
+  /// Irradiance by lights without a surface. The eye must have looked.
+  double byLights(std::size_t k, std::size_t b) const {
+    return scene_.byLights(k, b, result_.sky[k]);
   }
 
   /// Averages the shares of backs over all eyes. All passes see the same backs.
@@ -194,7 +194,7 @@ class Passes {
     double bound = 0;
     relative_bound_ = 0;
     for (std::size_t b = 0; b < bands_; ++b) {
-      const double emission = scene_.largestSource(b);
+      const double emission = scene_.largest_source[b];
       if (emission == 0) continue;
       double change = 0;
       double largest = 0;
@@ -225,7 +225,7 @@ class Passes {
       const double area = scene_.area[eye];
       const double before = result_.radiosity[k];
       energy.emitted[b] += area * scene_.materials.emission[k];
-      energy.from_sky[b] += area * fromSky(eye, b);
+      energy.from_sky[b] += area * byLights(eye, b);
       energy.absorbed[b] +=
           area * (1 - double(scene_.materials.reflectance[k])) * result_.irradiance[k];
       energy.to_sky[b] += area * result_.sky[eye] * before;

@@ -46,9 +46,14 @@ GpuField fieldOf(const GatherScene& scene) {
   field.bands = scene.bands;
   field.eyes = scene.size();
   field.patches = scene.mesh.size();
-  field.emission = scene.materials.emission;
+  field.emission = scene.source;
   field.reflectance = scene.materials.reflectance;
-  for (const double radiance : scene.sky) field.sky.push_back(std::numbers::pi * radiance);
+  field.sky.assign(scene.bands, 0.0);
+  for (const Light& light : scene.lights) {
+    for (std::size_t b = 0; b < scene.bands; ++b) {
+      field.sky[b] += std::numbers::pi * light.radiance(b);
+    }
+  }
   if (scene.basis) addFacets(scene, field);
   return field;
 }

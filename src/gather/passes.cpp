@@ -1,7 +1,6 @@
 #include "gather/passes.h"
 
 #include <algorithm>
-#include <numbers>
 
 namespace radiosity {
 namespace {
@@ -30,18 +29,31 @@ GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_p
       resolution(options.resolution),
       simd(options.simd),
       rows(patch_mesh, eyeOptions(options)),
-      sky(of_patches.sky) {
-  sky.resize(bands, 0.0);  // none: dark
+      lights(of_patches.lights) {
   if (at == GatherAt::patches) {
     standAtPatches(of_patches, options);
   } else {
     standAtVertices(of_patches, options);
   }
-  materials.largest_emission.assign(bands, 0.0);
-  for (std::size_t k = 0; k < materials.emission.size(); ++k) {
-    double& largest = materials.largest_emission[k % bands];
-    largest = std::max(largest, double(materials.emission[k]));
+  findSources();
+}
+
+void GatherScene::findSources() {
+  source = materials.emission;
+  largest_source.assign(bands, 0.0);
+  for (std::size_t k = 0; k < source.size(); ++k) {
+    const double aimed = byLights(k / bands, k % bands, 0);
+    source[k] = float(double(source[k]) + double(materials.reflectance[k]) * aimed);
+    double& largest = largest_source[k % bands];
+    largest = std::max({largest, double(materials.emission[k]), byLights(k / bands, k % bands, 1)});
   }
+}
+
+double GatherScene::byLights(std::size_t eye, std::size_t band, double open) const {
+  const LitPlace place{eyes[eye].position, eyes[eye].normal, open};
+  double irradiance = 0;
+  for (const Light& light : lights) irradiance += light.irradiance(band, place);
+  return irradiance;
 }
 
 void GatherScene::standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options) {
@@ -81,15 +93,8 @@ void GatherScene::standAtVertices(const PatchMaterials& of_patches, const Gather
   }
 }
 
-double GatherScene::largestSource(std::size_t band) const {
-  return std::max(materials.largest_emission[band], std::numbers::pi * sky[band]);
-}
-
 bool GatherScene::isLit() const {
-  for (std::size_t b = 0; b < bands; ++b) {
-    if (largestSource(b) > 0) return true;
-  }
-  return false;
+  return std::ranges::any_of(largest_source, [](double largest) { return largest > 0; });
 }
 
 std::size_t GatherScene::bytes() const {

@@ -18,7 +18,6 @@ namespace radiosity {
 struct EyeMaterials {
   std::vector<float> emission;
   std::vector<float> reflectance;
-  std::vector<double> largest_emission;  ///< bands
 };
 
 /// The data of the scene that all passes need; made once.
@@ -43,16 +42,22 @@ class GatherScene {
   std::vector<Index> eye_of_corner;  ///< at vertices
   std::optional<PatchBasis> basis;   ///< at vertices
   EyeMaterials materials;
-  std::vector<double> sky;  ///< bands; radiance, W/m^2/sr
-  /// The largest emission of a band, or the exitance of the sky if that is more. Changes are
-  /// relative to it.
-  double largestSource(std::size_t band) const;
-  /// Whether a patch emits or the sky shines in some band.
+  std::vector<Light> lights;  ///< without a surface
+  /// L * bands: emission, and what eyes reflect of aimed lights.
+  std::vector<float> source;
+  /// By band, the largest emission, or irradiance by lights under an open sky if that is more.
+  /// Changes are relative to it.
+  std::vector<double> largest_source;
+
+  /// Irradiance of an eye by lights, W/m^2. `open`: the share of its view that meets nothing.
+  double byLights(std::size_t eye, std::size_t band, double open) const;
+  /// Whether a patch emits or a light shines in some band.
   bool isLit() const;
 
  private:
   void standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options);
   void standAtVertices(const PatchMaterials& of_patches, const GatherOptions& options);
+  void findSources();
 };
 
 /// gather() in a scene with these options. `eye`: null for the CPU's.

@@ -58,10 +58,8 @@ Json toleranceOf(const FormFactors& factors, const FormFactorOptions& options) {
 }  // namespace
 
 PatchColours patchColours(const PatchMaterials& materials, const Solution& solution) {
-  return {
-      rgbOf(materials.reflectance, materials.bands), rgbOf(materials.emission, materials.bands),
-      rgbOf(solution.irradiance, solution.bands),
-      materials.sky.empty() ? std::vector<double>(3, 0.0) : rgbOf(materials.sky, materials.bands)};
+  return {rgbOf(materials.reflectance, materials.bands), rgbOf(materials.emission, materials.bands),
+          rgbOf(solution.irradiance, solution.bands)};
 }
 
 std::vector<MaterialColours> materialColours(const Scene& scene, const PatchMesh& mesh,
@@ -99,7 +97,6 @@ void describeScene(Json& header, const Scene& scene, const PatchMesh& mesh,
   header["patches"] = mesh.size();
   header["unknowns"] = mesh.unknowns();
   header["exposure"] = options.exposure;
-  header["sky"] = patches.sky;
   const Camera& camera = options.camera;
   header["camera"] = {{"eye", json(camera.eye)},
                       {"target", json(camera.target)},

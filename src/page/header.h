@@ -14,7 +14,6 @@ struct PatchColours {
   std::vector<double> reflectance;
   std::vector<double> emission;    ///< W/m^2
   std::vector<double> irradiance;  ///< W/m^2
-  std::vector<double> sky;         ///< 3: radiance, W/m^2/sr
 };
 /// Errors: as rgbOf().
 PatchColours patchColours(const PatchMaterials& materials, const Solution& solution);

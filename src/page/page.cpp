@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/figure_text.h"
+#include "mesh/clusters/cluster_means.h"
 #include "page/container.h"
 #include "page/eyes.h"
 #include "page/factor_codes.h"
@@ -14,6 +15,7 @@
 #include "page/surfaces.h"
 #include "radiosity/spelling.h"
 #include "results/glb.h"
+#include "visibility/lights/light_on_patches.h"
 
 namespace radiosity {
 
@@ -44,12 +46,24 @@ void addPatches(const PatchMesh& mesh, const PatchColours& colours, const Vec3& 
   container.add("irradiance", floats(colours.irradiance));
 }
 
-/// The shares of the sky, as in solve(): an exact row's account may be a little below 0.
-std::vector<float> skyShares(const FormFactors& factors) {
-  std::vector<float> shares;
-  shares.reserve(factors.sky.size());
-  for (const double share : factors.sky) shares.push_back(float(std::max(0.0, share)));
-  return shares;
+/// Lights without a surface: irradiance of unknowns by each, and what comes from where nothing
+/// stands.
+void addLights(const PatchMaterials& materials, const PatchMesh& mesh, const FormFactors& factors,
+               Container& container) {
+  const int bands = materials.bands;
+  Container::Json lights = Container::Json::array();
+  for (const Light& light : materials.lights) {
+    if (!light.shines()) continue;
+    std::vector<double> irradiance = lightOnPatches({&light, 1}, mesh, factors.sky, bands);
+    if (mesh.clusters) irradiance = clusterMeans(mesh, irradiance, bands);
+    container.add("light_" + std::to_string(lights.size()), floats(rgbOf(irradiance, bands)));
+    lights.push_back({{"name", light.name},
+                      {"unit", light.traits().unit},
+                      {"strength", rgbOf(light.strength, bands)},
+                      {"parameters", light.parametersText()},
+                      {"radiance", rgbOf(background({&light, 1}, bands), bands)}});
+  }
+  container.header()["lights"] = lights;
 }
 
 void addFactors(const FormFactors& factors, const ExchangeMatrix& matrix, const FactorCodes& codes,
@@ -57,7 +71,6 @@ void addFactors(const FormFactors& factors, const ExchangeMatrix& matrix, const 
   container.add("unknown_area", floats(matrix.area()));
   container.add("order", matrix.order());
   container.add("row_sum", floats(factors.fronts));
-  container.add("row_sky", skyShares(factors));
   container.add("row_error", floats(factors.error));
   container.add("factor_begin", codes.begin);
   container.add("factor_column", codes.column);
@@ -95,6 +108,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   addSurfaces(mesh, options.crease, origin, container);
   addEyes(mesh, options.crease, origin, container);
   addPatches(mesh, colours, origin, container);
+  addLights(pipeline.materials(), mesh, factors, container);
   addFactors(factors, matrix, codes, container);
   addSeenPatches(mesh, progress, container);
   report.element_triangles = addElements(mesh, light, options.crease, origin, container);

@@ -51,7 +51,7 @@ bool isNamedAsResults(const std::string& path) { return lowerExtension(path) == 
 bool overrides(const SceneOptions& options) {
   return !options.set.empty() || !options.materials_file.empty() || !options.one_sided.empty() ||
          !options.two_sided.empty() || !options.flip.empty() || !options.without.empty() ||
-         options.sky.has_value() || options.up.has_value();
+         !options.lights.empty() || options.up.has_value();
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ void Pipeline::requireOwnMesh(bool reused) const {
 
 void Pipeline::requireLight(const std::function<std::string()>& cure) const {
   if (hasOwnMaterials()) return;
-  if (scene().sky != Vec3(0.0)) return;
+  if (anyShines(scene().lights)) return;
   for (const Surface& surface : scene().surfaces) {
     if (scene().materials[surface.material].emission != Vec3(0.0)) return;
   }

@@ -9,6 +9,7 @@
 #include "radiosity/elements.h"
 #include "radiosity/names.h"
 #include "radiosity/solve.h"
+#include "scene/lights/light_text.h"
 
 namespace radiosity {
 
@@ -56,11 +57,11 @@ std::string reflectanceHash(const PatchMaterials& materials) {
   return hash.hex();
 }
 
-/// One number if all bands have the same.
-std::string skyText(const std::vector<double>& sky) {
-  if (sky.empty()) return "0";
-  const bool grey = std::all_of(sky.begin(), sky.end(), [&](double s) { return s == sky[0]; });
-  return grey ? fmt::format("{}", sky[0]) : fmt::format("{}", fmt::join(sky, ","));
+/// The sky's strength, then other lights.
+std::string lightsText(std::span<const Light> lights) {
+  std::string text = strengthText(skyRadiance(lights));
+  for (const std::string& light : otherLights(lights)) text += ";" + light;
+  return text;
 }
 
 std::string keyHash(const std::string& key) {

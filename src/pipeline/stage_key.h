@@ -43,7 +43,7 @@ StageKey usedKey(const StageKey& factors_key, std::string_view method);
 /// usedKey() returned, "factors"; of that of a solution, "solution".
 std::string materialsHash(const PatchMaterials& materials);
 std::string reflectanceHash(const PatchMaterials& materials);
-std::string skyText(const std::vector<double>& sky);
+std::string lightsText(std::span<const Light> lights);
 std::string keyHash(const std::string& key);
 /// A switch, as hashes take it.
 inline std::string onOff(bool value) { return value ? "on" : "off"; }

@@ -14,13 +14,13 @@ namespace {
 std::shared_ptr<GatheredHandle> gatherLight(std::shared_ptr<MeshHandle> mesh,
                                             const Array<double>& reflectance,
                                             const Array<double>& emission,
-                                            const std::vector<double>& sky, const py::dict& given,
-                                            const py::object& report) {
+                                            const std::optional<std::vector<double>>& sky,
+                                            const py::dict& given, const py::object& report) {
   const GatherOptions options = optionsFrom<GatherOptions>(given);
   auto handle = std::make_shared<GatheredHandle>();
   handle->mesh = std::move(mesh);
   const PatchMaterials materials{int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission),
-                                 sky};
+                                 lightsOf(sky, handle->mesh.get())};
   runLong(report, [&](Progress& progress) {
     const PatchMesh& patches = handle->mesh->result.mesh;
     handle->gathered = gather(patches, materials, options, progress);

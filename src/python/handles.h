@@ -25,6 +25,13 @@ struct MeshHandle {
   Key key;
 };
 
+/// A sky of that radiance, a band each; none: the lights of the scene.
+inline std::vector<Light> lightsOf(const std::optional<std::vector<double>>& sky,
+                                   const MeshHandle* mesh) {
+  if (!sky) return mesh->materials.lights;
+  return sky->empty() ? std::vector<Light>() : std::vector<Light>{uniformSky(*sky)};
+}
+
 struct FactorsHandle {
   std::shared_ptr<const MeshHandle> mesh;  ///< null: a matrix from elsewhere
   std::vector<std::string> names;          ///< of the rows of a matrix from elsewhere, or empty

@@ -26,9 +26,9 @@ bool hasShortSteps(const FactorsHandle& of, int bands) {
   return !shared && bands <= kShortStepBands && of.factors.matrix->size() <= kShortStepRows;
 }
 
-/// Reflectance and emission, (rows, bands), and the sky's radiance. A row is a patch of the mesh or
-/// a row of the matrix.
-using GivenMaterials = std::tuple<Array<double>, Array<double>, std::vector<double>>;
+/// Reflectance and emission, (rows, bands), and the sky's radiance or None: the lights of the
+/// scene. A row is a patch of the mesh or a row of the matrix.
+using GivenMaterials = std::tuple<Array<double>, Array<double>, std::optional<std::vector<double>>>;
 
 /// `given_materials`: empty: those of the scene, which the mesh has.
 std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factors,
@@ -41,15 +41,17 @@ std::shared_ptr<SolutionHandle> solveLight(std::shared_ptr<FactorsHandle> factor
   if (given_materials) {
     const auto& [reflectance, emission, sky] = *given_materials;
     handle->materials = std::make_shared<const PatchMaterials>(
-        PatchMaterials{int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission), sky});
+        PatchMaterials{int(emission.shape(1)), vectorOf(reflectance), vectorOf(emission),
+                       lightsOf(sky, of.mesh.get())});
   } else {
     handle->materials = {of.mesh, &of.mesh->materials};
   }
   const PatchMaterials& materials = *handle->materials;
   (hasShortSteps(of, materials.bands) ? runShortSteps : runLong)(report, [&](Progress& progress) {
     if (!of.mesh) {
-      handle->solution = solve(of.factors, materials.reflectance, materials.emission,
-                               materials.bands, options, progress, {}, {}, materials.sky);
+      handle->solution =
+          solve(of.factors, materials.reflectance, materials.emission, materials.bands, options,
+                progress, {}, {}, background(materials.lights, materials.bands));
       return;
     }
     handle->solution = solve(of.factors, materials, of.mesh->result.mesh, options, progress);

@@ -76,6 +76,19 @@ void save(const std::string& path, const FactorsHandle& factors, const SolutionH
   });
 }
 
+/// The kinds of lights as options.
+py::list describedLights() {
+  py::list all;
+  for (const Light& light : lightKinds()) {
+    py::dict option;
+    option["name"] = light.name;
+    option["value"] = 0.0;
+    option["help"] = light.traits().help;
+    all.append(option);
+  }
+  return all;
+}
+
 /// The options of a stage, a dict each: name, value by default, help.
 py::list optionsOf(const std::string& stage) {
   if (stage == "mesh") return described(MeshOptions());
@@ -83,6 +96,7 @@ py::list optionsOf(const std::string& stage) {
   if (stage == "solve") return described(SolveOptions());
   if (stage == "gather") return described(GatherOptions());
   if (stage == "heat") return described(HeatOptions());
+  if (stage == "lights") return describedLights();
   throw InputError("no stage has the name " + stage);
 }
 

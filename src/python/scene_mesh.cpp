@@ -11,6 +11,9 @@
 namespace radiosity::python {
 namespace {
 
+/// A kind, and the light as lightOf() takes it.
+using LightText = std::pair<std::string, std::string>;
+
 std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
   SceneOptions options;
   const KeywordOptions take(given);
@@ -25,9 +28,9 @@ std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
   take("two_sided", options.two_sided);
   take("flip", options.flip);
   take("without", options.without);
-  Triple sky{};
-  take("sky", sky);
-  if (take.has("sky")) options.sky = vec(sky);
+  std::vector<LightText> lights;
+  take("lights", lights);
+  for (const auto& [word, text] : lights) setLight(options.lights, lightOf(word, text));
   auto scene = std::make_shared<Scene>();
   runWithoutSteps([scene, path, options] { *scene = loadScene(path, options); });
   return scene;
@@ -36,7 +39,7 @@ std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
 std::shared_ptr<Scene> sceneOfArrays(const Array<double>& vertices, const Array<Index>& corners,
                                      const Array<std::uint64_t>& offset,
                                      const Array<Index>& surface, const py::list& materials,
-                                     const Triple& sky) {
+                                     const std::vector<LightText>& lights) {
   auto scene = std::make_shared<Scene>();
   scene->file = "arrays";
   const auto places = vectorsOf(vertices);
@@ -57,7 +60,7 @@ std::shared_ptr<Scene> sceneOfArrays(const Array<double>& vertices, const Array<
     scene->surfaces.push_back({name, Index(scene->materials.size()), name});
     scene->materials.push_back(material);
   }
-  scene->sky = vec(sky);
+  for (const auto& [word, text] : lights) setLight(scene->lights, lightOf(word, text));
   {
     const py::gil_scoped_release unlocked;
     validate(*scene);
@@ -163,7 +166,8 @@ void bindMesh(py::module_& module) {
     const PatchMaterials& materials = self.cast<const M&>().materials;
     return rows(materials.emission, materials.bands, self);
   });
-  type.def_property_readonly("sky", [](const M& m) { return m.materials.sky; });
+  type.def_property_readonly(
+      "sky", [](const M& m) { return background(m.materials.lights, m.materials.bands); });
   type.def_property_readonly("surface_names",
                              [](const M& m) { return m.result.mesh.surface_names; });
   type.def_property_readonly("unknowns", [](const M& m) { return m.result.mesh.unknowns(); });
@@ -187,7 +191,7 @@ void bindScene(py::module_& module) {
   array("corners", &Scene::corners);
   array("face_surface", &Scene::face_surface);
   type.def_readonly("file", &Scene::file);
-  type.def_property_readonly("sky", [](const Scene& s) { return triple(s.sky); });
+  type.def_property_readonly("sky", [](const Scene& s) { return background(s.lights, 3); });
   type.def_property_readonly("notes", [](const Scene& s) { return listOf(s.notes); });
   type.def_property_readonly("materials", &materialsOf);
   type.def_property_readonly("surface_names", [](const Scene& s) {

@@ -184,7 +184,8 @@ SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterial
   SurfaceLight light;
   light.patches = rgbOf(radiosity, materials.bands);
   light.reflected = reflectedLight(radiosity, materials);
-  const std::vector<double> sky = rgbOf(materials.sky, materials.bands);
+  const std::vector<double> sky =
+      rgbOf(background(materials.lights, materials.bands), materials.bands);
   if (!sky.empty()) light.sky = Vec3(sky[0], sky[1], sky[2]);
   return light;
 }

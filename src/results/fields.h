@@ -9,6 +9,7 @@
 
 #include "radiosity/results.h"
 #include "results/archive.h"
+#include "scene/lights/light_text.h"
 
 namespace radiosity {
 
@@ -64,11 +65,26 @@ void describe(Archive& a, Report& report) {
 }
 
 template <class Archive>
+void describeLights(Archive& a, Described<Archive, std::vector<Light>>& lights, std::size_t bands) {
+  std::vector<double> sky = skyRadiance(lights);
+  std::vector<std::string> others = otherLights(lights);
+  a.numbers("sky", sky, bands);
+  a.later("lights", others);
+  if constexpr (Archive::kReading) {
+    try {
+      lights = lightsOf(sky, others, int(bands));
+    } catch (const InputError& error) {
+      a.fail("lights", error.what());
+    }
+  }
+}
+
+template <class Archive>
 void describe(Archive& a, Described<Archive, Scene>& s) {
   a("file", s.file);
   a("unit", s.unit);
   a.laterChoice("up", s.up, kUpNames);
-  a("sky", s.sky);
+  describeLights(a, s.lights, 3);
   a("vertices", s.vertices, "m");
   a("face_offset", s.face_offset);
   a("corners", s.corners);
@@ -209,7 +225,7 @@ void describe(Archive& a, Described<Archive, PatchMaterials>& m) {
   const auto bands = std::size_t(m.bands);
   a.rows("reflectance", m.reflectance, bands);
   a.rows("emission", m.emission, bands, "W/m^2");
-  a.numbers("sky", m.sky, bands);
+  describeLights(a, m.lights, bands);
 }
 
 template <class Archive>

@@ -224,7 +224,9 @@ void checkEnergy(const Checker& check, const EnergyAccount& energy, std::size_t 
 void checkMaterials(const Checker& check, const PatchMaterials& m, const std::string& group) {
   check.within(m.reflectance, 0, 1, group + "/reflectance");
   check.within(m.emission, 0, HUGE_VAL, group + "/emission");
-  check.within(m.sky, 0, HUGE_VAL, group + "/sky");
+  for (const Light& light : m.lights) {
+    check.within(light.strength, 0, HUGE_VAL, group + "/" + light.name);
+  }
 }
 
 void checkSolution(const Checker& check, const Solution& s) {

@@ -24,8 +24,7 @@ class Validation {
     checkSurfaces();
     checkMaterials();
     checkTextures();
-    require(isFinite(scene_.sky) && scene_.sky.x >= 0 && scene_.sky.y >= 0 && scene_.sky.z >= 0,
-            "its sky has a radiance that is negative or no finite number");
+    checkLights();
   }
 
  private:
@@ -52,6 +51,15 @@ class Validation {
       require(offset[f] <= offset[f + 1], "face", f, "its offsets go down");
     }
     for (std::size_t f = 0; f < faces; ++f) checkFace(f);
+  }
+
+  void checkLights() const {
+    for (const Light& light : scene_.lights) {
+      require(light.strength.size() == 3,
+              fmt::format("{} has {} values of {}, it takes 3", light.name, light.strength.size(),
+                          light.traits().strength));
+      light.validate();
+    }
   }
 
   void checkFace(std::size_t f) const {

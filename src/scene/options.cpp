@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "scene/load_scene.h"
 
 namespace radiosity {
@@ -25,11 +23,7 @@ void SceneOptions::validate() const {
     throw InputError(
         fmt::format("max image {} is not above 0 and at most 2000 million pixels", max_image));
   }
-  for (int band = 0; sky && band < 3; ++band) {
-    if ((*sky)[band] >= 0 && std::isfinite((*sky)[band])) continue;
-    throw InputError(
-        fmt::format("sky radiance {} is not a finite value of 0 or more", (*sky)[band]));
-  }
+  for (const Light& light : lights) light.validate();
 }
 
 }  // namespace radiosity

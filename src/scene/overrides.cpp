@@ -31,6 +31,10 @@ struct Origin {
   }
 };
 
+Vec3 coloursOf(const Light& light) {
+  return {light.strength[0], light.strength[1], light.strength[2]};
+}
+
 class Overrides {
  public:
   explicit Overrides(Scene& scene);
@@ -43,7 +47,7 @@ class Overrides {
   void setSides(const std::string& name, bool two_sided, const Origin& origin);
   /// The surfaces that `name` stands for.
   std::vector<Index> surfacesOf(const std::string& name, const Origin& origin) const;
-  void setSky(const Vec3& radiance);
+  void replace(const Light& light);
   void readMaterialsFile(const std::string& path);
   void noteRounding() { rounded_.appendTo(scene_.notes); }
 
@@ -212,10 +216,14 @@ std::string Overrides::setEmission(Material& material, const Vec3& value, const 
          dropTexture(material.emission_texture, "");
 }
 
-void Overrides::setSky(const Vec3& radiance) {
-  note(fmt::format("sky: radiance {} -> {} W/m^2/sr from where nothing stands",
-                   describeBands(scene_.sky), describeBands(radiance)));
-  scene_.sky = radiance;
+void Overrides::replace(const Light& light) {
+  const auto before = std::ranges::find(scene_.lights, light.name, &Light::name);
+  const bool had_one = before != scene_.lights.end();
+  const LightTraits& traits = light.traits();
+  note(fmt::format("{}: {} {} -> {} {} {}", light.name, traits.strength,
+                   describeBands(had_one ? coloursOf(*before) : Vec3(0.0)),
+                   describeBands(coloursOf(light)), traits.unit, traits.from));
+  setLight(scene_.lights, light);
 }
 
 void Overrides::noteUnused(const std::string& name, Index material) {
@@ -343,7 +351,7 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
     }
     edits.requireFaces();
     overrides.noteRounding();
-    if (options.sky) overrides.setSky(*options.sky);
+    for (const Light& light : options.lights) overrides.replace(light);
     if (options.up) scene.up = *options.up;
   } catch (...) {
     scene.materials = std::move(materials);

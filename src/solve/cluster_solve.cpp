@@ -1,10 +1,10 @@
 #include "solve/cluster_solve.h"
 
-#include "formfactor/patch_irradiance.h"
 #include "mesh/clusters/cluster_means.h"
 #include "solve/beyond_means.h"
 #include "solve/energy.h"
 #include "solve/solve_rows.h"
+#include "visibility/lights/light_on_patches.h"
 
 namespace radiosity {
 
@@ -20,29 +20,44 @@ ClusterSolve::ClusterSolve(const FormFactors& factors, const PatchMaterials& mat
                  {mesh.surface, mesh.surface_names});
   reflectance_ = clusterMeans(mesh, materials.reflectance, materials.bands);
   emission_ = clusterMeans(mesh, materials.emission, materials.bands);
+  const auto by = [&](std::span<const double> open) {
+    return lightOnPatches(materials.lights, mesh, open, materials.bands);
+  };
+  by_lights_ = clusterMeans(mesh, by(factors.sky), materials.bands);
+  aimed_ = by({});
+  aimed_means_ = clusterMeans(mesh, aimed_, materials.bands);
   surface_ = clusterSurfaces(mesh);
 }
 
 Solution ClusterSolve::run() const {
   Solution means = between({});
   if (means.irradiance.empty()) return means;  // singular
-  PatchIrradiance within(mesh_, materials_.bands, materials_.sky);
-  within.look(patchValues(mesh_, means.radiosity, materials_.bands), progress_);
-  within.look(radiosityOf(within.around(means.irradiance)), progress_);
+  PatchIrradiance light(mesh_, materials_.bands, background(materials_.lights, materials_.bands));
+  light.look(patchValues(mesh_, means.radiosity, materials_.bands), progress_);
+  light.look(radiosityOf(within(light, means.irradiance)), progress_);
   const std::vector<double> more =
-      balanced(factors_, within.beyondMeans(), means.irradiance, materials_.bands);
+      balanced(factors_, light.beyondMeans(), means.irradiance, materials_.bands);
   Solution solution = between(more);
   accountFor(more, solution.summary.energy);
   judgeBalance(factors_, emission_, solution.summary);
   solution.summary.seconds += means.summary.seconds;
-  solution.irradiance = within.around(solution.irradiance);
+  solution.irradiance = within(light, std::move(solution.irradiance));
   solution.radiosity = radiosityOf(solution.irradiance);
   return solution;
 }
 
 Solution ClusterSolve::between(std::span<const double> more) const {
   return solveRows(factors_, reflectance_, emission_, materials_.bands, options_, progress_,
-                   {surface_, mesh_.surface_names}, materials_.sky, more);
+                   {surface_, mesh_.surface_names}, by_lights_, more);
+}
+
+/// Of patches, from that of clusters. Rays tell how it varies, and lights that they do not bring.
+std::vector<double> ClusterSolve::within(const PatchIrradiance& light,
+                                         std::vector<double> irradiance) const {
+  for (std::size_t k = 0; k < irradiance.size(); ++k) irradiance[k] -= aimed_means_[k];
+  irradiance = light.around(irradiance);
+  for (std::size_t k = 0; k < irradiance.size(); ++k) irradiance[k] += aimed_[k];
+  return irradiance;
 }
 
 /// Of patches.

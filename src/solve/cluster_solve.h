@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "formfactor/patch_irradiance.h"
 #include "radiosity/solve.h"
 
 namespace radiosity {
@@ -27,6 +28,7 @@ class ClusterSolve {
 
  private:
   Solution between(std::span<const double> more) const;
+  std::vector<double> within(const PatchIrradiance& light, std::vector<double> irradiance) const;
   std::vector<double> radiosityOf(std::span<const double> irradiance) const;
   void accountFor(std::span<const double> more, EnergyAccount& account) const;
 
@@ -38,6 +40,9 @@ class ClusterSolve {
   bool sees_out_;  ///< the sky or backs
   std::vector<double> reflectance_;
   std::vector<double> emission_;
+  std::vector<double> by_lights_;  ///< K * bands: irradiance by lights without a surface
+  std::vector<double> aimed_;      ///< N * bands: of these, by lights that rays do not bring
+  std::vector<double> aimed_means_;
   std::vector<Index> surface_;
 };
 

@@ -43,7 +43,7 @@ void judgeBalance(const FormFactors& factors, std::span<const double> emission,
 }
 
 // By reciprocity the light that goes to fronts is the light that falls on them from fronts: sum_i
-// A_i fronts_i B_i = sum_j A_j (H_j - S_j); S is the irradiance from the sky. The accounts of a row
+// A_i fronts_i B_i = sum_j A_j (H_j - S_j); S is the irradiance by lights. The accounts of a row
 // sum to 1 and B = E + rho H, so summing A_i B_i both ways gives
 //     sum A E + sum A S = sum A (1 - rho) H + sum A sky B + sum A backs B.
 // The imbalance of this equation measures missing reciprocity and the residual.
@@ -58,7 +58,7 @@ EnergyAccount energyAccount(const FormFactors& factors, std::span<const double> 
     for (std::size_t b = 0; b < width; ++b) {
       const std::size_t k = i * width + b;
       account.emitted[b] += area[i] * incoming.emission[k];
-      account.from_sky[b] += area[i] * incoming.sky[k];
+      account.from_sky[b] += area[i] * incoming.by_lights[k];
       account.absorbed[b] += area[i] * (1 - reflectance[k]) * irradiance[k];
       account.to_sky[b] += area[i] * factors.sky[i] * radiosity[k];
       account.on_backs[b] += area[i] * factors.backs[i] * radiosity[k];

@@ -7,10 +7,10 @@
 
 namespace radiosity {
 
-/// Incoming light: E, and the irradiance of the patches from the sky; N * bands, row-major, W/m^2.
+/// Incoming light: E, and irradiance by lights without a surface; N * bands, row-major, W/m^2.
 struct Incoming {
   std::span<const double> emission;
-  std::span<const double> sky;
+  std::span<const double> by_lights;
 };
 
 /// The account of B = `radiosity`, H = `irradiance`, all N * bands, row-major.

@@ -10,8 +10,6 @@ namespace radiosity {
 
 namespace {
 
-constexpr const char* kSky = "sky";
-
 bool anyAbove0(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return value > 0; });
 }
@@ -23,14 +21,24 @@ void checkSources(const PatchMaterials& materials, std::span<const LightSource> 
     if (!names.insert(source.name).second) {
       throw InputError(fmt::format("light sources: two are called '{}'", source.name));
     }
-    const bool fits = source.emission.size() == materials.reflectance.size() &&
-                      (source.sky.empty() || source.sky.size() == std::size_t(materials.bands));
-    if (!fits) {
+    const bool fits = std::ranges::all_of(source.lights, [&](const Light& light) {
+      return light.strength.size() == std::size_t(materials.bands);
+    });
+    if (!fits || source.emission.size() != materials.reflectance.size()) {
       throw InputError(fmt::format("light source '{}': {} emissions where {} are needed",
                                    source.name, source.emission.size(),
                                    materials.reflectance.size()));
     }
   }
+}
+
+/// The light of that name and kind, which is there afterwards: dark if it was not.
+Light& findOrAdd(std::vector<Light>& lights, const Light& like, std::size_t bands) {
+  const auto same = std::ranges::find_if(lights, [&](const Light& light) {
+    return light.name == like.name && light.kind == like.kind;
+  });
+  if (same != lights.end()) return *same;
+  return lights.emplace_back(like.name, like.kind, std::vector<double>(bands, 0.0));
 }
 
 /// Materials with the bands of every source side by side.
@@ -49,11 +57,11 @@ PatchMaterials sideBySide(const PatchMaterials& materials, std::span<const Light
       }
     }
   }
-  const bool sky = std::any_of(sources.begin(), sources.end(),
-                               [](const LightSource& source) { return anyAbove0(source.sky); });
-  for (const LightSource& source : sources) {
-    for (std::size_t b = 0; sky && b < bands; ++b) {
-      wide.sky.push_back(source.sky.empty() ? 0.0 : source.sky[b]);
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    for (const Light& light : sources[s].lights) {
+      if (!light.shines()) continue;
+      Light& of_all = findOrAdd(wide.lights, light, bands * sources.size());
+      std::ranges::copy(light.strength, of_all.strength.begin() + std::ptrdiff_t(s * bands));
     }
   }
   return wide;
@@ -115,8 +123,9 @@ std::vector<LightSource> lightSources(const PatchMaterials& materials, const Pat
     }
     if (anyAbove0(source.emission)) sources.push_back(std::move(source));
   }
-  if (anyAbove0(materials.sky)) {
-    sources.push_back({kSky, std::vector<double>(materials.emission.size()), materials.sky});
+  for (const Light& light : materials.lights) {
+    if (!light.shines()) continue;
+    sources.push_back({light.name, std::vector<double>(materials.emission.size()), {light}});
   }
   return sources;
 }
@@ -144,7 +153,9 @@ MixedLight mixLight(const LightBasis& basis, std::span<const LightWeight> weight
   light.materials.bands = basis.bands;
   light.materials.reflectance = mixed(basis.materials.reflectance, first, bands);
   light.materials.emission = mix(basis.materials.emission);
-  light.materials.sky = mix(basis.materials.sky);
+  for (const Light& wide : basis.materials.lights) {
+    light.materials.lights.push_back({wide.name, wide.kind, mix(wide.strength)});
+  }
   light.solution.bands = basis.bands;
   light.solution.radiosity = mix(basis.solution.radiosity);
   light.solution.irradiance = mix(basis.solution.irradiance);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include "base/option_list.h"
@@ -15,13 +14,14 @@
 #include "solve/linear_solve.h"
 #include "solve/singular.h"
 #include "solve/solve_rows.h"
+#include "visibility/lights/light_on_patches.h"
 
 namespace radiosity {
 
 namespace {
 
 void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
-                std::span<const double> emission, std::span<const double> sky, int bands,
+                std::span<const double> emission, std::span<const double> given, int bands,
                 const PatchNames& names) {
   if (!factors.matrix) throw InputError("solve: the form factors came without their matrix");
   const std::size_t n = factors.matrix->size();
@@ -35,11 +35,7 @@ void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
   check("row sum", factors.fronts.size(), n);
   check("back", factors.backs.size(), n);
   check("sky", factors.sky.size(), n);
-  if (!sky.empty()) check("sky radiance", sky.size(), std::size_t(bands));
-  for (const double radiance : sky) {
-    if (radiance >= 0 && std::isfinite(radiance)) continue;
-    throw InputError(fmt::format("solve: sky radiance {} is not a finite number >= 0", radiance));
-  }
+  check("given irradiance", given.size(), n * std::size_t(bands));
   if (names.group.empty()) return;
   check("surface", names.group.size(), n);
   for (const Index g : names.group) {
@@ -47,14 +43,21 @@ void checkSizes(const FormFactors& factors, std::span<const double> reflectance,
   }
 }
 
-/// Irradiance of each patch from the sky, N * bands, W/m^2. An exact row's account of the sky may
-/// be a little below 0.
-std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const double> sky,
+/// Irradiance of each patch from a sky of that radiance, N * bands, W/m^2. An exact row's account
+/// of the sky may be a little below 0.
+std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const double> radiance,
                                   int bands) {
-  std::vector<double> irradiance(factors.sky.size() * std::size_t(bands), 0.0);
-  for (std::size_t k = 0; !sky.empty() && k < irradiance.size(); ++k) {
-    const double share = std::max(0.0, factors.sky[k / std::size_t(bands)]);
-    irradiance[k] = std::numbers::pi * sky[k % std::size_t(bands)] * share;
+  const auto width = std::size_t(bands);
+  std::vector<double> irradiance(factors.sky.size() * width, 0.0);
+  if (radiance.empty()) return irradiance;
+  if (radiance.size() != width) {
+    throw InputError(
+        fmt::format("solve: {} sky radiance values where {} are needed", radiance.size(), width));
+  }
+  const Light sky = uniformSky({radiance.begin(), radiance.end()});
+  sky.validate();
+  for (std::size_t k = 0; k < irradiance.size(); ++k) {
+    irradiance[k] = sky.irradiance(k % width, {.open = std::max(0.0, factors.sky[k / width])});
   }
   return irradiance;
 }
@@ -68,8 +71,8 @@ std::vector<double> sourceOf(std::span<const double> reflectance, std::span<cons
 }
 
 /// Fills in the summary of a scene in which B = 0 for every patch.
-void nameDarkness(const std::vector<double>& from_sky, SolveSummary& summary) {
-  const bool sky = std::any_of(from_sky.begin(), from_sky.end(), [](double h) { return h > 0; });
+void nameDarkness(std::span<const double> by_lights, SolveSummary& summary) {
+  const bool sky = std::any_of(by_lights.begin(), by_lights.end(), [](double h) { return h > 0; });
   summary.status = sky ? SolveStatus::converged : SolveStatus::no_light;
   summary.message =
       sky ? "converged: the sky shines in, but no patch emits or reflects, so B = 0; usable"
@@ -99,18 +102,17 @@ namespace {
 
 Solution solveUntimed(const FormFactors& factors, std::span<const double> reflectance,
                       std::span<const double> emission, int bands, const SolveOptions& options,
-                      Progress& progress, const PatchNames& names, std::span<const double> sky,
-                      std::span<const double> more) {
+                      Progress& progress, const PatchNames& names,
+                      std::span<const double> by_lights, std::span<const double> more) {
   options.validate();
-  checkSizes(factors, reflectance, emission, sky, bands, names);
+  checkSizes(factors, reflectance, emission, by_lights, bands, names);
   checkMaterials(reflectance, emission, bands, names);
   requireSolver(options.solver, *factors.matrix);
 
   Solution solution;
   solution.bands = bands;
   SolveSummary& summary = solution.summary;
-  const std::vector<double> from_sky = skyIrradiance(factors, sky, bands);
-  std::vector<double> given = from_sky;
+  std::vector<double> given(by_lights.begin(), by_lights.end());
   for (std::size_t k = 0; k < more.size(); ++k) given[k] += more[k];
   const std::vector<double> source = sourceOf(reflectance, emission, given);
   const BandPlan plan(reflectance, source, bands);
@@ -122,7 +124,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
     solution.radiosity.assign(emission.size(), 0.0);
     solution.irradiance.assign(emission.size(), 0.0);
     summary.error_bound = 0.0;
-    nameDarkness(from_sky, summary);
+    nameDarkness(by_lights, summary);
   } else if (const WhiteRoom room = findWhiteRoom(factors, system); !room.patches.empty()) {
     summary.status = SolveStatus::singular;
     summary.message = fmt::format(
@@ -140,7 +142,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
     summary.message += fmt::format("; {}", factors.condition());
   }
   for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
-  summary.energy = energyAccount(factors, reflectance, {emission, from_sky}, solution.radiosity,
+  summary.energy = energyAccount(factors, reflectance, {emission, by_lights}, solution.radiosity,
                                  solution.irradiance, bands);
   return solution;
 }
@@ -149,11 +151,11 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
 
 Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
                    std::span<const double> emission, int bands, const SolveOptions& options,
-                   Progress& progress, const PatchNames& names, std::span<const double> sky,
+                   Progress& progress, const PatchNames& names, std::span<const double> by_lights,
                    std::span<const double> more) {
   const Stopwatch watch;
-  Solution solution =
-      solveUntimed(factors, reflectance, emission, bands, options, progress, names, sky, more);
+  Solution solution = solveUntimed(factors, reflectance, emission, bands, options, progress, names,
+                                   by_lights, more);
   solution.summary.seconds = watch.seconds();
   return solution;
 }
@@ -163,7 +165,7 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                Progress& progress, std::span<const Index> group,
                std::span<const std::string> group_names, std::span<const double> sky) {
   Solution solution = solveRows(factors, reflectance, emission, bands, options, progress,
-                                {group, group_names}, sky, {});
+                                {group, group_names}, skyIrradiance(factors, sky, bands), {});
   judgeBalance(factors, emission, solution.summary);
   return solution;
 }
@@ -172,8 +174,12 @@ Solution solve(const FormFactors& factors, const PatchMaterials& materials, cons
                const SolveOptions& options, Progress& progress) {
   materials.requireSizes(mesh.size());
   if (mesh.clusters) return ClusterSolve(factors, materials, mesh, options, progress).run();
-  return solve(factors, materials.reflectance, materials.emission, materials.bands, options,
-               progress, mesh.surface, mesh.surface_names, materials.sky);
+  Solution solution =
+      solveRows(factors, materials.reflectance, materials.emission, materials.bands, options,
+                progress, {mesh.surface, mesh.surface_names},
+                lightOnPatches(materials.lights, mesh, factors.sky, materials.bands), {});
+  judgeBalance(factors, materials.emission, solution.summary);
+  return solution;
 }
 
 }  // namespace radiosity

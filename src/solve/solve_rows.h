@@ -23,11 +23,11 @@ struct PatchNames {
 void checkMaterials(std::span<const double> reflectance, std::span<const double> emission,
                     int bands, const PatchNames& names);
 
-/// solve(), with additional irradiance `more` beyond that of the matrix and the sky: N * bands,
-/// W/m^2, or empty.
+/// solve() with irradiance by lights without a surface, N * bands, W/m^2, and, where it is not
+/// empty, `more` beyond that and that of the matrix.
 Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
                    std::span<const double> emission, int bands, const SolveOptions& options,
-                   Progress& progress, const PatchNames& names, std::span<const double> sky,
+                   Progress& progress, const PatchNames& names, std::span<const double> by_lights,
                    std::span<const double> more);
 
 }  // namespace radiosity

@@ -36,13 +36,18 @@ PatchMaterials spectrum(const Room& room, int bands) {
       materials.emission.push_back(room.materials.emission[3 * i] * (0.5 + unit(random)));
     }
   }
-  for (int b = 0; b < bands; ++b) materials.sky.push_back(0.1 + 0.2 * unit(random));
+  materials.lights = {uniformSky({})};
+  for (int b = 0; b < bands; ++b) {
+    materials.lights[0].strength.push_back(0.1 + 0.2 * unit(random));
+  }
   return materials;
 }
 
 PatchMaterials alone(const PatchMaterials& all, int band) {
-  return {1, bandOf(all.reflectance, all.bands, band), bandOf(all.emission, all.bands, band),
-          bandOf(all.sky, all.bands, band)};
+  return {1,
+          bandOf(all.reflectance, all.bands, band),
+          bandOf(all.emission, all.bands, band),
+          {uniformSky({all.lights[0].strength[std::size_t(band)]})}};
 }
 
 /// A fixed number of passes: among others, a band goes on until the last one is done.
@@ -151,7 +156,7 @@ TEST(GatherBands, MaterialsThatDoNotFitAreNamed) {
   bad.bands = 4;
   EXPECT_NE(refusal(bad).find("patches of 4 bands take"), std::string::npos) << refusal(bad);
   bad = five;
-  bad.sky.pop_back();
+  bad.lights[0].strength.pop_back();
   EXPECT_NE(refusal(bad).find("the sky has 4 bands, the patches have 5"), std::string::npos);
   bad = five;
   bad.reflectance[5 * 3 + 4] = 1.5;

@@ -217,14 +217,14 @@ TEST(PatchMaterials, SizesThatDoNotFitAreNamed) {
     const auto width = std::size_t(bands);
     PatchMaterials good{bands, std::vector<double>(4 * width), std::vector<double>(4 * width), {}};
     EXPECT_EQ(refusal(good, 4), "") << "a dark sky may be left out";
-    good.sky.assign(width, 1.0);
+    good.lights = {uniformSky(std::vector<double>(width, 1.0))};
     EXPECT_EQ(refusal(good, 4), "");
     EXPECT_NE(refusal(good, 5).find("reflectances are given, 5 patches"), std::string::npos);
     PatchMaterials bad = good;
     bad.emission.pop_back();
     EXPECT_NE(refusal(bad, 4).find("emissions are given, 4 patches"), std::string::npos);
     bad = good;
-    bad.sky.push_back(1);
+    bad.lights[0].strength.push_back(1);
     EXPECT_NE(refusal(bad, 4).find("the sky has"), std::string::npos);
     bad = good;
     bad.bands = 0;

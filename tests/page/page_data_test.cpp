@@ -175,11 +175,9 @@ void expectFactors(Made& made, bool dense) {
   const auto order = matrix.order();
   EXPECT_EQ(page.indices("order"), std::vector<Index>(order.begin(), order.end()));
   const auto row_sum = page.floats("row_sum");
-  const auto row_sky = page.floats("row_sky");
   const FormFactors& factors = made.pipeline.factors();
   for (std::size_t i = 0; i < n; ++i) {
     ASSERT_EQ(row_sum[i], float(factors.fronts[i]));
-    ASSERT_EQ(row_sky[i], float(std::max(0.0, factors.sky[i])));
   }
 }
 
@@ -288,14 +286,17 @@ TEST(PageData, PatchesThatShareUnknownsHaveLightOfTheirOwn) {
 /// The header's bound of the error of light by 16 bits: |(F' - F) B| <= largest_row_error max B.
 TEST(PageData, LightIsWithinThePagesErrorBound) {
   Scene scene = dataScene("cornell-box.obj");
-  scene.sky = Vec3(1, 2, 3);
+  scene.lights = {uniformSky({1, 2, 3})};
   Made made(std::move(scene), 200);
-  EXPECT_EQ(made.page().header["sky"], (std::vector<double>{1, 2, 3}));
+  const auto light = made.page().header["lights"].at(0);
+  EXPECT_EQ(light["name"], "sky");
+  EXPECT_EQ(light["strength"], (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(light["radiance"], (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(made.page().header["closed"], false);
   EXPECT_EQ(made.page().header["sees_out"], true);
   const std::vector<double> f = made.page().factors();
-  const auto row_sky = made.page().floats("row_sky");
-  EXPECT_GT(*std::max_element(row_sky.begin(), row_sky.end()), 0.1f);
+  const auto by_sky = made.page().floats("light_0");
+  EXPECT_GT(*std::max_element(by_sky.begin(), by_sky.end()), 0.3f);
   const Solution& solution = made.pipeline.solution();
   const std::size_t n = made.mesh().size();
   double largest = 0;
@@ -303,7 +304,7 @@ TEST(PageData, LightIsWithinThePagesErrorBound) {
   double off = 0;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t b = 0; b < 3; ++b) {
-      double gathered = std::numbers::pi * double(b + 1) * double(row_sky[i]);
+      double gathered = double(by_sky[3 * i + b]);
       for (std::size_t j = 0; j < n; ++j) gathered += f[i * n + j] * solution.radiosity[3 * j + b];
       off = std::max(off, std::abs(gathered - solution.irradiance[3 * i + b]));
     }

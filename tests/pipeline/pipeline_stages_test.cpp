@@ -516,7 +516,7 @@ TEST_F(PipelineStages, AFilesOwnMaterialsBelongToItsMesh) {
   pipeline.options().mesh.patches = patches;
   EXPECT_EQ(pipeline.solution().radiosity, b) << "a refusal leaves all as it was";
   SceneOptions overrides;
-  overrides.sky = Vec3(1.0);
+  overrides.lights = {uniformSky({1, 1, 1})};
   Pipeline overridden(progress_);
   expectError<InputError>(file, "materials of 5 bands", [&] { overridden.open(file, overrides); });
 }

@@ -55,7 +55,7 @@ SceneOptions Model::options() const {
   for (const Part& part : parts) {
     if (part.two_sided && !part.faces.empty()) options.two_sided.push_back(part.name);
   }
-  if (sky > 0) options.sky = Vec3(sky);
+  if (sky > 0) options.lights = {uniformSky({sky, sky, sky})};
   return options;
 }
 

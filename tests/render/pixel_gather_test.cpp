@@ -191,7 +191,7 @@ TEST(Textures, AreDrawnTexelByTexel) {
   builder.surface("sign");
   builder.level(0, -1, -1, 1, 1, 0);
   Scene scene = builder.scene();
-  scene.sky = Vec3(1.0);
+  scene.lights = {uniformSky({1, 1, 1})};
   scene.materials[0].reflectance = Vec3(1.0);
   scene.materials[0].texture = 0;
   // Four quarters, each of 2 x 2 alike texels, so that pixels within them are not blurred.

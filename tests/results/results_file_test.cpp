@@ -90,12 +90,12 @@ TEST_F(ResultsFile, BandsFollowTheRows) {
   Results spectral = sample::results(3, Precision::single_precision, 8);
   spectral.solution = {};
   spectral.elements = {};
-  spectral.materials->sky.clear();
+  spectral.materials->lights.clear();
   write(spectral);
   const Results read = readResults(file());
   ASSERT_TRUE(read.materials);
   EXPECT_EQ(read.materials->bands, 8);
-  EXPECT_TRUE(read.materials->sky.empty());
+  EXPECT_TRUE(read.materials->lights.empty());
   EXPECT_TRUE(sample::same(spectral, read));
 
   // Rows that the file would cut short are refused before anything is written.

@@ -39,7 +39,7 @@ inline Scene scene() {
   s.textures.push_back({"one.png", 2, 1, {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 1.f}, false});
   s.textures.push_back({"two.png", 40, 30, std::vector<float>(40 * 30 * 3, 0.25f), true});
   s.cameras = {{"front", {1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 0.6, 1.5}, {}};
-  s.sky = {0.1, 1, 1e9};
+  s.lights = {uniformSky({0.1, 1, 1e9})};
   s.up = Up::z;
   s.unit = "mm";
   s.notes = {{Severity::loud, "lamp: emits by inheritance"}, {Severity::info, ""}};
@@ -235,7 +235,8 @@ inline PatchMaterials materials(std::size_t n, int bands) {
     m.reflectance.push_back(1.0 / double(k + 3));
     m.emission.push_back(1e-9 * double(k));
   }
-  for (int b = 0; b < bands; ++b) m.sky.push_back(0.25 * double(b) + 0.1);
+  m.lights = {uniformSky({})};
+  for (int b = 0; b < bands; ++b) m.lights[0].strength.push_back(0.25 * double(b) + 0.1);
   return m;
 }
 
@@ -422,6 +423,10 @@ inline auto members(const Surface& s) {
 inline auto members(const Camera& s) {
   const auto& [a, b, c, d, e, f] = s;
   return std::tie(a, b, c, d, e, f);
+}
+inline auto members(const Light& s) {
+  const auto& [a, b, c] = s;
+  return std::tie(a, b, c);
 }
 inline auto members(const Scene& s) {
   const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = s;

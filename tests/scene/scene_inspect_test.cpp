@@ -195,7 +195,7 @@ TEST(SceneInspect, NamesSolidsAndRoomsThatAreInsideOut) {
         "it is a room, turn it over, flip='all'";
     EXPECT_NOTE(inspectScene(scene).problems, text, Severity::warning);
     Scene lit = scene;
-    lit.sky = Vec3(1);
+    lit.lights = {uniformSky({1, 1, 1})};
     EXPECT_NOTE(inspectScene(lit).problems, text, Severity::info);
     Scene seen = scene;
     seen.cameras.emplace_back();

@@ -83,8 +83,10 @@ TEST(SceneValidation, NamesTheElementAndItsFault) {
             "scene: material 0: its emission -1 is negative or no finite number");
   EXPECT_EQ(refusal([](Scene& s) { s.materials[1].texture = 0; }),
             "scene: material 1: there is no texture 0; there are 0");
-  EXPECT_EQ(refusal([&](Scene& s) { s.sky.x = nan; }),
-            "scene: its sky has a radiance that is negative or no finite number");
+  EXPECT_EQ(refusal([&](Scene& s) { s.lights[0].strength[0] = nan; }),
+            "sky radiance nan is not a finite value of 0 or more");
+  EXPECT_EQ(refusal([&](Scene& s) { s.lights[0].strength.pop_back(); }),
+            "scene: sky has 2 values of radiance, it takes 3");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST_F(SceneOverride, NamesMaterialsThatBecomeWhiteOnce) {
   };
   EXPECT_EQ(whites(), 1);
   SceneOptions later;
-  later.sky = Vec3(1);
+  later.lights = {uniformSky({1, 1, 1})};
   applyOverrides(scene, later);
   EXPECT_EQ(whites(), 1);
   later.set = {"shelf.reflectance=1"};

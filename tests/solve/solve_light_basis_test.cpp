@@ -26,7 +26,7 @@ class LightBasisTest : public ::testing::Test {
     builder.face(wall, {{w, 0, 0}, {w, 0, h}, {w, d, h}, {w, d, 0}});
     builder.face(wall, {{0, 0, 0}, {0, 0, h}, {w, 0, h}, {w, 0, 0}});
     builder.face(window, {{0, d, 0}, {w, d, 0}, {w, d, h}, {0, d, h}});
-    builder.scene().sky = Vec3(1, 2, 3);
+    builder.scene().lights = {uniformSky({1, 2, 3})};
     MeshOptions options;
     options.patches = 400;
     mesh = meshScene(builder.scene(), options, quiet).mesh;
@@ -53,7 +53,7 @@ TEST_F(LightBasisTest, MixturesEqualFullSolutions) {
     for (std::size_t k = 0; k < full.emission.size(); ++k) {
       full.emission[k] = weights[0] * sources[0].emission[k] + weights[1] * sources[1].emission[k];
     }
-    for (double& radiance : full.sky) radiance *= weights[2];
+    for (double& radiance : full.lights[0].strength) radiance *= weights[2];
     const Solution expected = solve(factors, full, mesh, options, quiet);
     ASSERT_EQ(expected.summary.status, SolveStatus::converged);
     const std::vector<LightWeight> mix = {
@@ -65,7 +65,7 @@ TEST_F(LightBasisTest, MixturesEqualFullSolutions) {
     EXPECT_LE(test::largestDifference(mixed.solution.irradiance, expected.irradiance), bound);
     EXPECT_EQ(mixed.materials.reflectance, materials.reflectance);
     EXPECT_LT(test::largestDifference(mixed.materials.emission, full.emission), 1e-12);
-    EXPECT_EQ(mixed.materials.sky, full.sky);
+    EXPECT_EQ(mixed.materials.lights[0].strength, full.lights[0].strength);
     for (std::size_t b = 0; b < 3; ++b) {
       EXPECT_NEAR(mixed.solution.summary.energy.absorbed[b], expected.summary.energy.absorbed[b],
                   1e-6 * expected.summary.energy.absorbed[b]);

@@ -154,7 +154,7 @@ TEST(Sky, GatheredLightOfAFloorIsRhoPiL) {
   const PatchMaterials materials{3,
                                  std::vector<double>(3 * mesh.size(), 0.25),
                                  std::vector<double>(3 * mesh.size(), 0.0),
-                                 {2, 0, 1}};
+                                 {uniformSky({2, 0, 1})}};
   for (const GatherAt at : {GatherAt::patches, GatherAt::vertices}) {
     GatherOptions options;
     options.at = at;
@@ -164,7 +164,7 @@ TEST(Sky, GatheredLightOfAFloorIsRhoPiL) {
     EXPECT_EQ(int(g.summary.status), int(GatherStatus::converged)) << g.summary.message;
     for (std::size_t k = 0; k < g.radiosity.size(); ++k) {
       // 32-bit floats.
-      EXPECT_NEAR(g.radiosity[k], 0.25 * kPi * materials.sky[k % 3], 1e-6);
+      EXPECT_NEAR(g.radiosity[k], 0.25 * kPi * materials.lights[0].strength[k % 3], 1e-6);
     }
     // The one pass leaves the floor's reflected light in flight.
     const GatherPass& last = g.summary.passes.back();

@@ -99,18 +99,20 @@ void PatchMaterials::requireSizes(std::size_t patches) const {
   };
   check("reflectances", reflectance.size());
   check("emissions", emission.size());
-  if (sky.empty() || sky.size() == std::size_t(bands)) return;
-  throw InputError(
-      fmt::format("materials: the sky has {} bands, the patches have {}; give it as many, or none "
-                  "where it is dark",
-                  sky.size(), bands));
+  for (const Light& light : lights) {
+    if (light.strength.size() == std::size_t(bands)) continue;
+    throw InputError(
+        fmt::format("materials: the {} has {} bands, the patches have {}; give it as "
+                    "many, or leave it out where it is dark",
+                    light.name, light.strength.size(), bands));
+  }
 }
 
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
   PatchMaterials result;
   result.reflectance.resize(3 * mesh.size());
   result.emission.resize(3 * mesh.size());
-  result.sky = {scene.sky.x, scene.sky.y, scene.sky.z};
+  result.lights = scene.lights;
   const auto put = [](std::vector<double>& values, std::size_t i, const Vec3& value) {
     for (int b = 0; b < 3; ++b) values[3 * i + std::size_t(b)] = value[b];
   };

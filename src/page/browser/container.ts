@@ -17,6 +17,15 @@ export interface MaterialInfo {
   factor: Rgb; // reflectance that its texture multiplies; without one it is `reflectance`
 }
 
+/** A light without a surface, by its strength in `unit`. */
+export interface LightInfo {
+  name: string;
+  unit: string;
+  strength: Rgb;
+  parameters: string; // ",NAME=VALUE" of each, as the command line has them
+  radiance: Rgb; // from where nothing stands, W/m^2/sr
+}
+
 export interface Header {
   title: string;
   program: string;
@@ -28,7 +37,7 @@ export interface Header {
   closed: boolean;
   sees_out: boolean; // the sky, or backs
   exposure: number; // pictures show radiance * 2^exposure
-  sky: Rgb; // radiance
+  lights: LightInfo[];
   camera: { eye: Rgb; target: Rgb; up: Rgb; fov: number };
   origin: Rgb; // added to every position
   diagonal: number; // metres
@@ -56,7 +65,6 @@ export interface SeenData {
   patchAxis: Float32Array; // patch by patch, of each axis of its unknown
   unknown: Uint32Array; // N
   area: Float32Array; // N, m^2
-  sky: Rgb; // radiance
   seesOut: boolean;
 }
 
@@ -85,7 +93,7 @@ export interface PageData {
   irradiance: Float32Array; // N*3, W/m^2
   unknownArea: Float32Array; // K
   rowSum: Float32Array; // K
-  rowSky: Float32Array; // K, the share of the view that is sky
+  lightIrradiance: Float32Array[]; // K*3 by each light, W/m^2
   rowError: Float32Array; // K; empty: the method has none
   factorBegin: Uint32Array; // K+1
   factorColumn: Uint32Array; // empty: rows hold every column from the diagonal on
@@ -176,7 +184,8 @@ function check(data: PageData): void {
     requireLength(name, data[name], n * 3);
   }
   for (const name of ["area", "surface", "side", "unknown"] as const) requireLength(name, data[name], n);
-  for (const name of ["unknownArea", "rowSum", "rowSky"] as const) requireLength(name, data[name], k);
+  for (const name of ["unknownArea", "rowSum"] as const) requireLength(name, data[name], k);
+  for (const light of data.lightIrradiance) requireLength("light", light, k * 3);
   if (data.rowError.length > 0) requireLength("row_error", data.rowError, k);
   requireLength("factor_begin", data.factorBegin, k + 1);
   requireLength("factor_code", data.factorCode, data.factorBegin[k]!);
@@ -212,7 +221,6 @@ function readSeen(buffer: ArrayBuffer, header: Header): SeenData {
     patchAxis: view(buffer, header, "patch_axis", "f32"),
     unknown: view(buffer, header, "unknown", "u32"),
     area: view(buffer, header, "area", "f32"),
-    sky: header.sky,
     seesOut: header.sees_out,
   };
 }
@@ -247,7 +255,7 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     irradiance: f32("irradiance"),
     unknownArea: f32("unknown_area"),
     rowSum: f32("row_sum"),
-    rowSky: f32("row_sky"),
+    lightIrradiance: header.lights.map((_, l) => f32(`light_${l}`)),
     rowError: f32("row_error"),
     factorBegin: u32("factor_begin"),
     factorColumn: u32("factor_column"),

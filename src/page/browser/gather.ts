@@ -39,12 +39,12 @@ export class Gather {
   private closed = false;
 
   /** Throws an Error with one sentence if the browser cannot gather. */
-  constructor(data: PageData, light: PatchLight, tint: Rgb, resolution: number) {
+  constructor(data: PageData, light: PatchLight, sky: Rgb, resolution: number) {
     this.eyes = new Eyes(data);
     this.gpu = new GatherGpu(data, this.eyes, resolution);
     this.batch = new Batch(this.gpu.software ? SOFTWARE_BATCH_MS : BATCH_MS, this.gpu.capacity);
     this.materials = this.eyes.materials(light);
-    this.sky = data.header.sky.map((x, b) => x * tint[b]!) as Rgb;
+    this.sky = sky;
     this.gpu.setLight(this.eyes.corners(this.materials.emission));
   }
 

@@ -54,7 +54,8 @@ export class GatherPanel {
     this.onBegin();
     viewer.showSolved(); // we compare with a solution, not an iterate
     try {
-      this.gather = new Gather(viewer.data, viewer.solved, viewer.sky, Number(select("gather-resolution").value));
+      const resolution = Number(select("gather-resolution").value);
+      this.gather = new Gather(viewer.data, viewer.solved, viewer.background(), resolution);
     } catch (error) {
       this.refuse((error as Error).message);
       return;

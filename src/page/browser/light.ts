@@ -138,12 +138,17 @@ export function withMaterials(data: PageData, states: MaterialState[]): Omit<Pat
   return { emission, reflectance };
 }
 
-export function materialsOfUnknowns(data: PageData, light: Omit<PatchLight, "irradiance">, sky: Rgb): Materials {
+/** The radiance of what is seen where nothing stands, with factors on each light. */
+export function background(lights: { radiance: Rgb }[], factors: Rgb[]): Rgb {
+  return [0, 1, 2].map((b) => lights.reduce((sum, { radiance }, l) => sum + radiance[b]! * factors[l]![b]!, 0)) as Rgb;
+}
+
+export function materialsOfUnknowns(data: PageData, light: Omit<PatchLight, "irradiance">, lights: Rgb[]): Materials {
   const { emission, reflectance } = light;
   return {
     emission: unknownMeans(data, emission),
     reflectance: unknownMeans(data, reflectance),
-    sky,
+    lights,
     ...(data.seen && { patches: { emission, reflectance } }),
   };
 }

@@ -52,8 +52,8 @@ const SKY_SHARE = 0.88;
 
 /** Shows the sky behind the scene. */
 function showSky(viewer: Viewer): void {
-  const sky = viewer.data.header.sky.map((x, b) => x * viewer.sky[b]! * 2 ** viewer.uniforms.exposure.value);
-  if (!viewer.data.header.sky.some((x) => x > 0)) return;
+  const sky = viewer.background().map((x) => x * 2 ** viewer.uniforms.exposure.value);
+  if (!viewer.data.header.lights.some(({ radiance }) => Math.max(...radiance) > 0)) return;
   const bytes = sky.map((x) => Math.round(255 * SKY_SHARE * toSrgb(Math.min(1, Math.max(0, x)))));
   element("stage").style.background = `rgb(${bytes.join(" ")})`;
 }

@@ -1,5 +1,5 @@
 // The messages between the page and its solver worker. Values of unknowns: K * 3, row-major.
-import type { SeenData } from "./container";
+import type { Rgb, SeenData } from "./container";
 import type { StoredFactors } from "./factors";
 import type { Method } from "./methods";
 
@@ -13,7 +13,7 @@ export interface PatchMaterials {
 export interface Materials {
   emission: Float32Array; // W/m^2
   reflectance: Float32Array;
-  sky: [number, number, number]; // factors on the sky's light
+  lights: Rgb[]; // factors on each light without a surface
   patches?: PatchMaterials; // if they share unknowns
 }
 
@@ -23,7 +23,7 @@ export interface Load {
   order: Uint32Array | null; // of Gauss-Seidel's sweeps over unknowns; null: as numbered
   materials: Materials;
   irradiance: Float32Array; // as stored
-  sky: Float32Array; // irradiance from the sky as stored, K * 3
+  lights: { irradiance: Float32Array; radiance: Rgb }[]; // as stored: K * 3; from where nothing stands
   seen: SeenData | null; // if patches share unknowns
 }
 

@@ -44,10 +44,10 @@ export class RelightPanel {
 
   constructor(private readonly viewer: Viewer, private readonly onChange: () => void) {
     this.textured = texturedMaterials(viewer.data);
-    const { materials, surfaces, sky } = viewer.data.header;
+    const { materials, surfaces, lights } = viewer.data.header;
     const used = materials.map((_, k) => k).filter((k) => surfaces.some((s) => s.material === k));
     const lamps = used.filter((k) => largest(materials[k]!.emission) > 0);
-    this.fill("lamps", "Lamps", [...lamps.map((k) => this.lamp(k)), ...(largest(sky) > 0 ? [this.sky()] : [])]);
+    this.fill("lamps", "Lamps", [...lamps.map((k) => this.lamp(k)), ...lights.map((_, l) => this.light(l))]);
     this.fill("materials", "Reflectances", used.map((k) => this.material(k)));
     on("relight-reset", "click", () => this.reset());
     on("copy-command", "click", () => void copy(element("command").textContent ?? "", element("copy-command")));
@@ -56,7 +56,7 @@ export class RelightPanel {
 
   reset(): void {
     this.viewer.states = this.viewer.storedStates();
-    this.viewer.sky = [1, 1, 1];
+    this.viewer.lights = this.viewer.storedLights();
     for (const { refresh } of this.rows) refresh();
     this.onChange();
     this.viewer.toStored();
@@ -77,14 +77,16 @@ export class RelightPanel {
     };
   }
 
-  private sky(): Row {
-    const stored = this.viewer.data.header.sky;
-    const get = () => stored.map((x, b) => x * this.viewer.sky[b]!) as Rgb;
+  private light(l: number): Row {
+    const { name, unit, strength, parameters } = this.viewer.data.header.lights[l]!;
+    const get = () => strength.map((x, b) => x * this.viewer.lights[l]![b]!) as Rgb;
     return {
-      name: "sky", note: "", stored, limits: uniform(STRONGEST * largest(stored)), unit: "W/m²/sr",
+      name, note: "", stored: strength, limits: uniform(STRONGEST * largest(strength)), unit: unit.replace("^2", "²"),
       get,
-      set: (value) => { this.viewer.sky = value.map((x, b) => (stored[b]! > 0 ? x / stored[b]! : 0)) as Rgb; },
-      option: () => `--sky ${digits(get())}`,
+      set: (value) => {
+        this.viewer.lights[l] = value.map((x, b) => (strength[b]! > 0 ? x / strength[b]! : 0)) as Rgb;
+      },
+      option: () => `--${name} ${digits(get())}${parameters}`,
     };
   }
 

@@ -1,7 +1,7 @@
 // The state of the solver worker between messages: the matrix, the last light, and a run that is
 // watched. It does not depend on workers, so that tests can call it directly.
-import type { Rgb } from "./container";
 import { type Factors, denseRow, expand } from "./factors";
+import { background } from "./light";
 import type { Method } from "./methods";
 import type { Frame, Load, Materials, Reply } from "./protocol";
 import { type Lit, Relight } from "./relight";
@@ -96,7 +96,7 @@ export class Session {
     const multiply = (x: Float64Array) => this.multiply(x);
     const { seen } = this.load;
     if (!this.within || !materials.patches || !seen) return new Relight(system, this.lit, multiply);
-    const sky = materials.sky.map((factor, b) => factor * seen.sky[b]!) as Rgb;
+    const sky = background(this.load.lights, materials.lights);
     return new SharedRelight(system, this.lit, multiply, this.within, materials.patches, sky, seen.seesOut);
   }
 
@@ -170,7 +170,10 @@ export class Session {
   }
 
   private system(materials: Materials): System {
-    const more = this.load.sky.map((h, k) => h * materials.sky[k % solver.BANDS]!);
+    const more = new Float32Array(materials.emission.length);
+    this.load.lights.forEach(({ irradiance }, l) => irradiance.forEach((h, k) => {
+      more[k] = more[k]! + h * materials.lights[l]![k % solver.BANDS]!;
+    }));
     return { factors: this.factors, emission: materials.emission, reflectance: materials.reflectance, more };
   }
 }

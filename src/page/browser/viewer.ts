@@ -7,7 +7,7 @@ import { redBlue, viridis, type ColourMap } from "./colour";
 import type { PageData, Rgb } from "./container";
 import { automaticRange, extremes, NO_VALUE, type Range, type Scale } from "./false_colour";
 import {
-  luminance, materialsOfUnknowns, patchIrradiance, radiosityOf, withMaterials, unknownMeans,
+  background, luminance, materialsOfUnknowns, patchIrradiance, radiosityOf, withMaterials, unknownMeans,
   type MaterialState, type PatchLight,
 } from "./light";
 import type { Method } from "./methods";
@@ -26,8 +26,6 @@ export interface Picked {
   row: Float32Array | null; // of its unknown; null: not here yet
 }
 
-const BANDS = 3;
-
 export class Viewer {
   readonly uniforms = makeUniforms();
   readonly meshes: SceneMeshes;
@@ -43,7 +41,7 @@ export class Viewer {
   elements = true;
   range: Range | null = null; // null: that of the values
   extremes: Range = { low: 0, high: 0 }; // of the values that have a colour
-  sky: Rgb = [1, 1, 1];
+  lights: Rgb[]; // factors on each light without a surface
   states: MaterialState[];
   readonly picks: Record<MarkName, Picked | null> = { first: null, second: null };
 
@@ -61,7 +59,8 @@ export class Viewer {
     this.stored = { emission: data.emission, reflectance: data.reflectance, irradiance: data.irradiance };
     this.light = this.solved = this.stored;
     this.states = this.storedStates();
-    this.materials = materialsOfUnknowns(data, this.stored, this.sky);
+    this.lights = this.storedLights();
+    this.materials = materialsOfUnknowns(data, this.stored, this.lights);
     this.meshes = new SceneMeshes(data, this.uniforms);
     this.control = new CameraControl(canvas, data.header);
     this.stage = new Stage(canvas, this.meshes, this.control, this.uniforms);
@@ -86,18 +85,21 @@ export class Viewer {
       ({ reflectance: [...reflectance], emission: [...emission] }));
   }
 
+  storedLights(): Rgb[] { return this.data.header.lights.map(() => [1, 1, 1]); }
+
+  /** The radiance of what is seen where nothing stands. */
+  background(): Rgb { return background(this.data.header.lights, this.lights); }
+
   async start(): Promise<void> {
     const { data } = this;
     const { lowest, step } = data.header.quantisation;
-    const sky = Float32Array.from({ length: data.header.unknowns * BANDS }, (_, k) =>
-      Math.PI * data.header.sky[k % BANDS]! * data.rowSky[Math.floor(k / BANDS)]!);
     const loaded = await this.solver.load({
       stored: { area: data.unknownArea, begin: data.factorBegin, column: data.factorColumn,
                 code: data.factorCode, lowest, step },
       order: data.order,
       materials: this.materials,
       irradiance: unknownMeans(data, data.irradiance),
-      sky,
+      lights: data.header.lights.map(({ radiance }, l) => ({ irradiance: data.lightIrradiance[l]!, radiance })),
       seen: data.seen,
     });
     this.agreement = loaded.agreement;
@@ -112,17 +114,17 @@ export class Viewer {
     };
   }
 
-  /** Solves again with `states` and `sky`. */
+  /** Solves again with `states` and `lights`. */
   relight(): void {
     this.solved = { ...withMaterials(this.data, this.states), irradiance: this.solved.irradiance };
-    this.materials = materialsOfUnknowns(this.data, this.solved, this.sky);
+    this.materials = materialsOfUnknowns(this.data, this.solved, this.lights);
     this.solver.relight(this.materials);
     this.showSolved();
   }
 
   toStored(): void {
     this.solved = this.stored;
-    this.materials = materialsOfUnknowns(this.data, this.stored, this.sky);
+    this.materials = materialsOfUnknowns(this.data, this.stored, this.lights);
     this.showSolved();
   }
 

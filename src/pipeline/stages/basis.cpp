@@ -1,6 +1,7 @@
 // Light of single lamps: from form factors and reflectance.
 #include "base/hash.h"
 #include "pipeline/stages/get_or_make.h"
+#include "scene/lights/light_text.h"
 #include "solve/linear_solve.h"
 
 namespace radiosity {
@@ -12,7 +13,8 @@ std::string sourcesHash(std::span<const LightSource> sources) {
   for (const LightSource& source : sources) {
     hash.text(source.name);
     hash.array(source.emission);
-    hash.array(source.sky);
+    hash.array(skyRadiance(source.lights));
+    for (const std::string& light : otherLights(source.lights)) hash.text(light);
   }
   return hash.hex();
 }

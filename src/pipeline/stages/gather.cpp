@@ -9,7 +9,7 @@ const Gathered& Pipeline::gathered() {
   const PatchMaterials& materials = materialsOfMesh();
   StageKey key(keyText(options_.gather));
   key.add("materials", materialsHash(materials));
-  key.add("sky", skyText(materials.sky));
+  key.add("sky", lightsText(materials.lights));
   key.add("mesh", geometryHash(patches));
   return getOrMake(kStage<Stage::gather>, key, [&] {
     return computedStage("gathering",

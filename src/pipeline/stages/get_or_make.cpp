@@ -23,7 +23,7 @@ std::optional<std::string> Pipeline::inputNow(std::string_view name) {
   if (name == "mesh") return geometryHash(made(results_.mesh).mesh);
   if (name == "materials") return materialsHash(materialsOfMesh());
   if (name == "reflectance") return reflectanceHash(materialsOfMesh());
-  if (name == "sky") return skyText(materialsOfMesh().sky);
+  if (name == "sky") return lightsText(materialsOfMesh().lights);
   if (name == "factors") return keyHash(usedFactorsKey().text());
   if (name == "solution") return keyHash(results_.solution.key);
   return std::nullopt;

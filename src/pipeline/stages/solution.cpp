@@ -11,7 +11,7 @@ StageKey solutionKey(const SolveOptions& options, const PatchMaterials& material
                      const StageKey& factors_key) {
   StageKey key(keyText(options));
   key.add("materials", materialsHash(materials));
-  key.add("sky", skyText(materials.sky));
+  key.add("sky", lightsText(materials.lights));
   key.add("factors", keyHash(factors_key.text()));
   return key;
 }

@@ -74,7 +74,7 @@ class Materials(NamedTuple):
 
     reflectance: np.ndarray
     emission: np.ndarray
-    sky: list
+    sky: Optional[list]  # None: the lights of the scene
     shape: Tuple[int, ...]  # of the given emission
 
 
@@ -120,7 +120,7 @@ def materials_of(mesh: Optional[Mesh], rows: int, meaning: str, reflectance: Any
     if lamps > 1:
         rho = np.repeat(rho, lamps, axis=1)
     if mesh is not None and emission is None and sky is None:
-        shine = mesh._handle.sky
+        shine = None
     else:
         shine = _sky(sky, bands, lamps)
     return Materials(np.ascontiguousarray(rho), E.reshape(rows, bands * lamps), shine, E.shape)

@@ -26,10 +26,11 @@ def takes_options(stage: str) -> Callable[[Function], Function]:
     return documented
 
 
-def more(stage: str, given: dict) -> dict:
-    """`given`, what a function found in its `**more`. TypeError for what is no option of the stage."""
+def more(stage: str, given: dict, function: str = "") -> dict:
+    """`given`, what a function found in its `**more`. TypeError for what is no option of the stage,
+    whose name the function has if it is not told."""
     known = {option["name"] for option in _core.options(stage) if option["help"]}
     for name in given:
         if name not in known:
-            raise TypeError(f"{stage}() got an unexpected keyword argument {name!r}")
+            raise TypeError(f"{function or stage}() got an unexpected keyword argument {name!r}")
     return given

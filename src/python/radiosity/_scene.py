@@ -11,6 +11,7 @@ from . import _core
 from ._arrays import Fixed, indices, numbers, path_text, printable, require, texts, yes_or_no
 from ._core import InputError
 from ._notes import tell
+from ._options import more, takes_options
 
 #: The defaults of materials given as arrays.
 _PLAIN = {"reflectance": 0.5, "emission": 0.0, "two_sided": False}
@@ -98,6 +99,12 @@ def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, A
     return made
 
 
+def _lights(given: Mapping[str, Any]) -> list:
+    """Word and text of each light."""
+    return [(word, value if isinstance(value, str) else ",".join(map(repr, _colour(word, value))))
+            for word, value in given.items() if value is not None]
+
+
 class Scene(Fixed):
     """Faces, their surfaces and materials.
 
@@ -119,14 +126,16 @@ class Scene(Fixed):
     [100.0, 100.0, 100.0]
     """
 
+    @takes_options("lights")
     def __init__(self, vertices: Any, faces: Any, groups: Any = None,
                  materials: Optional[Mapping[Any, Mapping[str, Any]]] = None,
-                 sky: Any = 0.0) -> None:
+                 sky: Any = 0.0, **lights: Any) -> None:
         places = numbers("vertices", vertices, [(None, 3)])
         corners, offset, count = _corners(faces, len(places))
         surface, names = _group_of_faces(groups, count)
         self._handle = _core.scene_of_arrays(places, corners, offset, surface,
-                                             _materials(names, materials), _colour("sky", sky))
+                                             _materials(names, materials),
+                                             _lights(dict(sky=sky, **more("lights", lights, "Scene"))))
 
     @classmethod
     def _of(cls, handle: "_core.Scene") -> "Scene":
@@ -184,6 +193,7 @@ class Scene(Fixed):
                 f"from {printable(self._handle.file)}>")
 
 
+@takes_options("lights")
 def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
          kd_is_srgb: bool = False, default_reflectance: float = 0.5,
          vertex_colours: str = "off", textures: bool = True,
@@ -191,7 +201,7 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
          materials_file: Union[None, str, "os.PathLike[str]"] = None,
          one_sided: Union[str, Sequence[str]] = (), two_sided: Union[str, Sequence[str]] = (),
          flip: Union[str, Sequence[str]] = (), without: Union[str, Sequence[str]] = (),
-         sky: Any = None) -> Scene:
+         sky: Any = None, **lights: Any) -> Scene:
     """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
 
     unit: mm, cm, m, in or ft (default metres). vertex_colours: off, linear or srgb, how those of
@@ -215,7 +225,7 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
                    textures=textures, set=texts("set", set), materials_file=materials_path,
                    one_sided=texts("one_sided", one_sided), two_sided=texts("two_sided", two_sided),
                    flip=texts("flip", flip), without=texts("without", without),
-                   sky=None if sky is None else _colour("sky", sky))
+                   lights=_lights(dict(sky=sky, **more("lights", lights, "load"))))
     scene = Scene._of(_core.load(path_text("path", path), options))
     tell(scene.notes)
     return scene

@@ -69,7 +69,7 @@ void SceneChecks::reportLight(SceneInfo& info) const {
   }
   // A closed body that faces outwards is lit by the sky all around.
   const bool sky_is_seen = !enclosed();
-  const bool sky_shines = scene_.sky != Vec3(0.0);
+  const bool sky_shines = anyShines(scene_.lights);
   if (!any && !(sky_is_seen && sky_shines)) {
     info.problems.push_back(
         {Severity::info,

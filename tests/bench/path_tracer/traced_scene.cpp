@@ -70,7 +70,8 @@ TracedScene::TracedScene(const PatchMesh& mesh, const PatchMaterials& materials,
       triangles_.push_back(t);
     }
   }
-  if (!materials.sky.empty()) sky_ = {materials.sky[0], materials.sky[1], materials.sky[2]};
+  const std::vector<double> sky = background(materials.lights, 3);
+  if (!sky.empty()) sky_ = {sky[0], sky[1], sky[2]};
   findLights();
   build();
 }

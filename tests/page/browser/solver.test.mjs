@@ -188,13 +188,13 @@ test("Southwell's first shot is the lamp's light, and what waits is its residual
 });
 
 function session(withKernel = true) {
-  const materials = { emission: data.emission, reflectance: data.reflectance, sky: [1, 1, 1] };
+  const materials = { emission: data.emission, reflectance: data.reflectance, lights: [] };
   const load = {
     stored,
     order: null,
     materials,
     irradiance: unknownMeans(data, data.irradiance),
-    sky: dark,
+    lights: [],
     seen: null,
   };
   return new Session(load, withKernel ? kernel : null);
@@ -202,7 +202,7 @@ function session(withKernel = true) {
 
 // Before the first shot nothing was sent: the brightest lamp waits, and it is what residuals are relative to.
 test("a watched run of Southwell starts with all of the lamps' light unsent", () => {
-  const materials = { emission: data.emission, reflectance: data.reflectance, sky: [1, 1, 1] };
+  const materials = { emission: data.emission, reflectance: data.reflectance, lights: [] };
   const watched = session();
   assert.equal(watched.start(1, "southwell", materials).residual, 1);
   let last = 1;
@@ -220,7 +220,7 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
     emission: emission.map((x) => 2 * x),
   }));
   const doubled = withMaterials(data, states);
-  const lamp = session().relight({ ...doubled, sky: [1, 1, 1] }, 1000);
+  const lamp = session().relight({ ...doubled, lights: [] }, 1000);
   assert.ok(lamp.products <= 2, `${lamp.products} products`); // the start is right but for the 16 bits
   assert.ok(
     relativeError(
@@ -236,7 +236,7 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
     [() => 0.95, false],
   ]) {
     const reflectance = data.reflectance.map(turn);
-    const relit = session(vectors).relight({ emission: data.emission, reflectance, sky: [1, 1, 1] }, 10000);
+    const relit = session(vectors).relight({ emission: data.emission, reflectance, lights: [] }, 10000);
     const expected = solve("gauss-seidel", { ...system, reflectance }, 400);
     const radiosity = radiosityOf({ emission: data.emission, reflectance, irradiance: relit.irradiance });
     assert.ok(relit.converged);
@@ -254,7 +254,7 @@ const shared = await pageData("shared.html");
 const sharedMaterials = (reflectance) => ({
   emission: unknownMeans(shared, shared.emission),
   reflectance: unknownMeans(shared, reflectance),
-  sky: [1, 1, 1],
+  lights: [],
   patches: { emission: shared.emission, reflectance },
 });
 function sharedSession() {
@@ -264,7 +264,7 @@ function sharedSession() {
     order: null,
     materials: sharedMaterials(shared.reflectance),
     irradiance,
-    sky: new Float32Array(irradiance.length),
+    lights: [],
     seen: shared.seen,
   };
   return new Session(load, kernel);
@@ -298,7 +298,7 @@ test("irradiance of patches is never negative, and its means are those of unknow
 });
 
 test("a relight that is cut short goes on to the same light", () => {
-  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), sky: [1, 1, 1] };
+  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), lights: [] };
   const whole = session().relight(materials, 10000);
   const cut = session();
   let part = cut.relight(materials, 0),
@@ -312,7 +312,7 @@ test("a relight that is cut short goes on to the same light", () => {
 });
 
 test("warming the solver up changes nothing", () => {
-  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), sky: [1, 1, 1] };
+  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), lights: [] };
   const warmed = session();
   warmed.warm();
   assert.deepEqual(warmed.relight(materials, 10000).irradiance, session().relight(materials, 10000).irradiance);

@@ -194,17 +194,17 @@ std::vector<std::size_t> RowAssembly::uncertainPairs() const {
   const ElementSet& elements = context_.elements;
   const std::vector<OccludedPair>& pairs = pairs_.occluded_pairs;
   const double scene_area = context_.emitters->scene_area;
-  struct Light {
+  struct Received {
     double exchange = 0;
     double mean = 0;    ///< the exchange if all surfaces got the same
     double square = 0;  ///< of the error, without pairs that are evaluated again
   };
-  std::unordered_map<Index, Light> lights;
+  std::unordered_map<Index, Received> lights;
   std::vector<std::size_t> by_error;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const Index receiver = receiverOf(pairs[k]);
     if (receiver == kNone) continue;
-    Light& light = lights[receiver];
+    Received& light = lights[receiver];
     light.exchange += occluded_[k].exchange;
     light.mean += elements.area[pairs[k].row] * elements.area[pairs[k].column] / scene_area;
     light.square += occluded_[k].error * occluded_[k].error;
@@ -214,7 +214,7 @@ std::vector<std::size_t> RowAssembly::uncertainPairs() const {
                            [&](std::size_t k) { return occluded_[k].error; });
   std::vector<std::size_t> uncertain;
   for (const std::size_t k : by_error) {
-    Light& light = lights[receiverOf(pairs[k])];
+    Received& light = lights[receiverOf(pairs[k])];
     const double accepted = kAcceptedShare * std::max(light.exchange, kDark * light.mean);
     if (light.square <= accepted * accepted) continue;
     light.square -= occluded_[k].error * occluded_[k].error;

@@ -1,0 +1,23 @@
+// Lights as files and keys have them: the sky as it stood there before there were other lights, and
+// those as texts.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "radiosity/light.h"
+
+namespace radiosity {
+
+/// Empty: there is no sky.
+std::vector<double> skyRadiance(std::span<const Light> lights);
+/// "NAME=TEXT" of each light that is not the sky; TEXT as lightOf() takes it.
+std::vector<std::string> otherLights(std::span<const Light> lights);
+/// The inverse of these two.
+std::vector<Light> lightsOf(const std::vector<double>& sky, std::span<const std::string> others,
+                            int bands);
+/// One number if all bands have the same; "0" of none.
+std::string strengthText(std::span<const double> strength);
+
+}  // namespace radiosity
