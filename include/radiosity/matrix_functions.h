@@ -27,8 +27,8 @@ SymmetricMatrix symmetrized(const RowMatrix& matrix);
 /// The matrix between groups of patches: G_IJ = sum of A_i F_ij over i in I and j in J, and
 /// F_IJ = G_IJ / A_I, with A_I the area of group I; F_II is the form factor of a group to itself.
 /// Row sums, weighted by area, and reciprocity are kept. What is symmetric gives a SymmetricMatrix,
-/// all else a RowMatrix, with the precision `stored`, else that of the pairs stored in this process,
-/// else double. `group_of`: N groups below `groups`, else InputError. Throws Cancelled.
+/// all else a RowMatrix, with the precision `stored`, else that of the pairs stored in this
+/// process, else double. `group_of`: N groups below `groups`, else InputError. Throws Cancelled.
 std::shared_ptr<const ExchangeMatrix> aggregated(const ExchangeOperator& factors,
                                                  std::span<const Index> group_of,
                                                  std::size_t groups, Progress& progress,
@@ -39,4 +39,4 @@ std::size_t estimateRowFormBytes(std::size_t n, double entries_per_row, Precisio
 /// The most bytes that a symmetric matrix with that many entries per row takes, in any arrangement.
 std::size_t estimateSymmetricBytes(std::size_t n, double entries_per_row, Precision precision);
 
-}  // namespace radiosity
+}  // namespace gnu::visibility("default")]]radiosity
