@@ -17,8 +17,8 @@ namespace {
 template <std::size_t... K>
 std::vector<Light> kindsOf(std::index_sequence<K...> /*all*/) {
   std::vector<Light> kinds;
-  const auto add = [&kinds](LightKind kind) {
-    Light& light = kinds.emplace_back("", std::move(kind), std::vector<double>());
+  const auto add = [&kinds](const LightKind& kind) {
+    Light& light = kinds.emplace_back("", kind, std::vector<double>());
     light.name = light.traits().word;
   };
   (add(std::variant_alternative_t<K, LightKind>()), ...);
