@@ -39,4 +39,4 @@ std::size_t estimateRowFormBytes(std::size_t n, double entries_per_row, Precisio
 /// The most bytes that a symmetric matrix with that many entries per row takes, in any arrangement.
 std::size_t estimateSymmetricBytes(std::size_t n, double entries_per_row, Precision precision);
 
-}  // namespace gnu::visibility("default")]]radiosity
+}  // namespace radiosity
