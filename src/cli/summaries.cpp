@@ -80,10 +80,6 @@ void describeCameras(Report& report, const Scene& scene) {
                rows);
 }
 
-}  // namespace
-
-namespace {
-
 /// "W/m^2/sr" -> "W_per_m2_sr", for keys.
 std::string wordOfUnit(std::string unit) {
   std::erase(unit, '^');

@@ -104,7 +104,7 @@ EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& material
       elements_(elements),
       occluders_(occluders),
       emitters_(emitters),
-      aimed_(aimedLights(materials.lights)),
+      lights_(aimedLights(materials.lights)),
       rays_(rays),
       tree_(bodiesOf(occluders)),
       kernels_(visibilityKernels(true)),
@@ -143,7 +143,7 @@ std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& 
     lights->settled = true;
   }
   const bool dark = lights->kind == ElementLights::Kind::dark;
-  if (dark && !aimed_.empty()) lights->kind = ElementLights::Kind::plain;
+  if (dark && !lights_.empty()) lights->kind = ElementLights::Kind::plain;
   return lights;
 }
 
@@ -243,7 +243,7 @@ void EmitterLight::thinOut(const ElementShape& shape, const Lights& from, Lights
 
 double EmitterLight::irradiance(const SurfacePoint& point, const ElementLights* lights,
                                 std::span<double> out) const {
-  for (const Light& light : aimed_) {
+  for (const Light& light : lights_) {
     for (std::size_t b = 0; b < out.size(); ++b) {
       out[b] += light.irradiance(b, {point.position, point.normal});
     }

@@ -73,7 +73,7 @@ class EmitterLight : public FieldLight {
   const ElementSet& elements_;
   const OccluderSet* occluders_;
   const std::vector<Emitter>& emitters_;
-  std::vector<Light> aimed_;  ///< without a surface
+  std::vector<Light> lights_;  ///< without a surface
   const PointRays& rays_;
   OccluderTree tree_;
   VisibilityKernels kernels_;

@@ -112,7 +112,7 @@ LightSources::LightSources(const PatchMesh& mesh, const PatchMaterials& material
       progress_(progress),
       bands_(std::size_t(materials.bands)),
       surface_(mesh, options.crease, kDirectInset, kIndirectInset),
-      indirect_surface_(mesh, options.crease, kIndirectInset, kIndirectInset),
+      indirect_surface_(mesh, options.crease, kIndirectInset),
       lookup_(mesh, surface_.roots),
       rays_(mesh),
       elements_(mesh) {

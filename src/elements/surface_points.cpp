@@ -42,16 +42,19 @@ struct ElementSurface::RootEdge {
 };
 
 ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset,
-                               const Inset& inner)
+                               const std::optional<Inset>& inner)
     : diagonal(boxOf(mesh.vertices).diagonal()),
       roots(elementRoots(mesh)),
       insets_(findInsets(mesh, inset)),
-      inner_insets_(findInsets(mesh, inner)) {
+      inner_insets_(inner ? findInsets(mesh, *inner) : insets_) {
   for (Index p = 0; p < mesh.polygons.size(); ++p) owners.push_back({p});
   addVertices(mesh, cornerGroups(mesh, crease));
   addEdges(mesh, crease);
   insetCorners(mesh, inset, insets_, &SurfaceEdge::inset, &SurfacePoint::position);
-  insetCorners(mesh, inner, inner_insets_, &SurfaceEdge::inner, &SurfacePoint::inner);
+  for (SurfacePoint& point : points) point.inner = point.position;
+  if (inner) {
+    insetCorners(mesh, *inner, inner_insets_, &SurfaceEdge::inner, &SurfacePoint::inner);
+  }
 }
 
 Index ElementSurface::ownersOf(std::vector<Index> polygons) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -70,8 +71,9 @@ class EdgeMap {
 /// The roots of elements over a mesh, and the vertices at their corners. Neighbours share a vertex
 /// if they are on one smooth side (cornerGroups()), and an edge if nothing else touches it.
 struct ElementSurface {
-  /// `inner`: the inset of SurfacePoint::inner.
-  ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset, const Inset& inner);
+  /// `inner`: the inset of SurfacePoint::inner, if it is another.
+  ElementSurface(const PatchMesh& mesh, double crease, const Inset& inset,
+                 const std::optional<Inset>& inner = {});
 
   double diagonal = 0;  ///< metres
   ElementRoots roots;

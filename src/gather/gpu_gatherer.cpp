@@ -48,12 +48,9 @@ GpuField fieldOf(const GatherScene& scene) {
   field.patches = scene.mesh.size();
   field.emission = scene.source;
   field.reflectance = scene.materials.reflectance;
-  field.sky.assign(scene.bands, 0.0);
-  for (const Light& light : scene.lights) {
-    for (std::size_t b = 0; b < scene.bands; ++b) {
-      field.sky[b] += std::numbers::pi * light.radiance(b);
-    }
-  }
+  field.sky = background(scene.lights, int(scene.bands));
+  field.sky.resize(scene.bands, 0.0);  // no light: dark
+  for (double& radiance : field.sky) radiance *= std::numbers::pi;
   if (scene.basis) addFacets(scene, field);
   return field;
 }

@@ -178,8 +178,8 @@ std::vector<double> exchangeByProducts(const ExchangeOperator& factors,
       const std::size_t i = k / width;
       exchange[group_of[i] * groups + first + k % width] += factors.area()[i] * seen[k];
     }
+    progress.advance((first + width) * factors.size() / groups - first * factors.size() / groups);
   }
-  progress.advance(factors.size());
   return exchange;
 }
 

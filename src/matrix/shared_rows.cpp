@@ -238,6 +238,13 @@ KrylovOutcome SharedRows::solve(const KrylovProblem& problem, std::span<double> 
   return processes_.solve(shared.problem(), solution);
 }
 
+std::shared_ptr<const ExchangeMatrix> wholeMatrix(Processes* processes,
+                                                  std::shared_ptr<const ExchangeMatrix> own,
+                                                  WhileWaiting waiting) {
+  if (processes == nullptr) return own;
+  return std::make_shared<SharedRows>(*processes, std::move(own), std::move(waiting));
+}
+
 void serveRows(Processes& processes, const ExchangeMatrix& own, const MakeTaker& make_taker) {
   const RowOwners owners = findOwners(processes, own, {});
   std::optional<Dealing> dealing;

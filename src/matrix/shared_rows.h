@@ -57,6 +57,11 @@ class SharedRows final : public ExchangeMatrix {
   RowOwners owners_;
 };
 
+/// The matrix of all rows: `own` itself in one process, which null stands for.
+std::shared_ptr<const ExchangeMatrix> wholeMatrix(Processes* processes,
+                                                  std::shared_ptr<const ExchangeMatrix> own,
+                                                  WhileWaiting waiting);
+
 /// The loop of the other processes: serves process 0 until its matrix is destroyed. `make_taker`:
 /// what takes the blocks of SharedRows::deal().
 void serveRows(Processes& processes, const ExchangeMatrix& own, const MakeTaker& make_taker);

@@ -430,7 +430,7 @@ TEST(Elements, SliversDoNotHoldTheVerticesOfTheirNeighbours) {
   Progress quiet;
   const PatchMesh mesh = meshScene(builder.scene(), {.patches = 40}, quiet).mesh;
   const Inset inset{0.0015, 0.21};
-  const ElementSurface surface(mesh, 30, inset, inset);
+  const ElementSurface surface(mesh, 30, inset);
   const double whole = inset.of_diagonal * surface.diagonal;
   std::size_t large = 0;
   for (std::size_t r = 0; r < surface.roots.size(); ++r) {

@@ -434,9 +434,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
       fillRows({scene, known, closed, journal, *rows, result, seen_backs, {}}, processes, progress);
   report.empty_rows = n - report.hemicube.hemicubes;
   closed.report(mesh, report);
-  result.matrix = processes == nullptr ? std::shared_ptr<const ExchangeMatrix>(rows)
-                                       : std::make_shared<SharedRows>(
-                                             *processes, rows, [&progress] { progress.check(); });
+  result.matrix = wholeMatrix(processes, rows, [&progress] { progress.check(); });
   constexpr std::size_t kSteps = 2;
   progress.begin("finishing", kSteps);
   const auto step = [&] {

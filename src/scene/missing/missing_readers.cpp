@@ -8,26 +8,28 @@
 namespace radiosity {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path) {
+[[noreturn]] void refuse(const std::string& file, const std::string& what, const char* or_else) {
   throw InputError(
       fmt::format("{}: {} is not read by this build, which is the core alone; build with "
-                  "-DRADIOSITY_FILES=ON, or export the scene as .obj",
-                  path, lowerExtension(path)));
+                  "-DRADIOSITY_FILES=ON{}",
+                  file, what, or_else));
+}
+
+[[noreturn]] void refuseScene(const std::string& path) {
+  refuse(path, lowerExtension(path), ", or export the scene as .obj");
 }
 
 }  // namespace
 
-Scene loadGltf(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
-Scene loadVtk(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
-Scene loadVtkXml(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
-Scene load3mf(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
-Scene loadAssimp(const std::string& path, const SceneOptions& /*options*/) { refuse(path); }
+Scene loadGltf(const std::string& path, const SceneOptions& /*options*/) { refuseScene(path); }
+Scene loadVtk(const std::string& path, const SceneOptions& /*options*/) { refuseScene(path); }
+Scene loadVtkXml(const std::string& path, const SceneOptions& /*options*/) { refuseScene(path); }
+Scene load3mf(const std::string& path, const SceneOptions& /*options*/) { refuseScene(path); }
+Scene loadAssimp(const std::string& path, const SceneOptions& /*options*/) { refuseScene(path); }
 
 void scanJson(const std::string& file, std::string_view /*text*/,
               const std::function<void(std::span<const JsonStep>, const JsonValue&)>& /*visit*/) {
-  throw InputError(file +
-                   ": JSON is not read by this build, which is the core alone; build with "
-                   "-DRADIOSITY_FILES=ON");
+  refuse(file, "JSON", "");
 }
 
 }  // namespace radiosity

@@ -315,9 +315,7 @@ FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* jou
                                 journal, processes, progress);
   const auto check = [&] { progress.check(); };
   if (processes != nullptr) evenOut(*processes, *rows.matrix, check);
-  result.matrix = processes == nullptr
-                      ? std::shared_ptr<const ExchangeMatrix>(rows.matrix)
-                      : std::make_shared<SharedRows>(*processes, rows.matrix, check);
+  result.matrix = wholeMatrix(processes, rows.matrix, check);
   result.backs = std::move(rows.backs);
   result.sky.assign(n, 0.0);
   const Stopwatch finishing;
