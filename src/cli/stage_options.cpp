@@ -28,11 +28,9 @@ double parseReflectance(const std::string& text) {
 void addLightOption(CLI::App& app, Request& r, const Light& kind) {
   const std::string name = "--" + kind.name;
   const auto take = [&r, name, word = kind.name](const std::string& text) {
-    nameOption(name, [&] {
-      const Light light = lightOf(word, text);
-      light.validate();
-      setLight(r.scene.lights, light);
-    });
+    const Light light = lightOf(word, text);
+    nameOption(name, [&] { light.validate(); });
+    setLight(r.scene.lights, light);
   };
   std::string value = kind.traits().strength;
   std::ranges::transform(value, value.begin(), [](unsigned char c) { return std::toupper(c); });

@@ -326,3 +326,7 @@ def test_cells_of_meshio_that_are_not_read_are_named():
         rad.from_meshio(mesh)
     mesh = meshio.Mesh(points, [("triangle", [[0, 1, 2]])], cell_sets={"a": [[-1]]})
     refused(lambda: rad.from_meshio(mesh), "^meshio mesh: cell set 'a' has cell -1 of block 0")
+
+
+def test_a_light_is_named():
+    refused(lambda: rad.load(ROOT / CORNELL, sky="bright"), "^sky: 'bright' is not one finite number")

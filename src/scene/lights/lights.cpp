@@ -7,6 +7,7 @@
 #include <ranges>
 
 #include "base/option_list.h"
+#include "radiosity/spelling.h"
 #include "scene/lights/light_text.h"
 
 namespace radiosity {
@@ -36,9 +37,9 @@ bool setParameter(Light& light, std::string_view name, std::string_view value) {
 }
 
 [[noreturn]] void failAt(const Light& light, const std::string& text, int bands) {
-  throw InputError(fmt::format("'{}' is not one finite number or {} with commas, {}{}", text,
-                               bands == 3 ? "three" : std::to_string(bands), light.traits().unit,
-                               light.parametersText()));
+  throw InputError(fmt::format(
+      "{}: '{}' is not one finite number or {} with commas, {}{}", spelled(light.name), text,
+      bands == 3 ? "three" : std::to_string(bands), light.traits().unit, light.parametersText()));
 }
 
 }  // namespace
