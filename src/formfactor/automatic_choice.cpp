@@ -86,14 +86,14 @@ Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Pro
   const auto fits = [limit = options.memory_limit](const FormFactorPlan& one) {
     return limit == 0 || one.bytes <= limit;
   };
-  Chosen exact{entryOf(FormFactorMethod::exact).prepare(mesh, options), {}};
+  Chosen exact{prepareMethod(FormFactorMethod::exact, mesh, options), {}};
   std::optional<FormFactorPlan> planned = planInTime(*exact.method, kFirstSeconds, progress);
   if (planned && fits(*planned) && planned->seconds <= kShortSeconds) {
     exact.plan = *std::move(planned);
     exact.plan.reason = fmt::format("it takes {}", secondsText(exact.plan.seconds));
     return exact;
   }
-  Chosen rays{entryOf(FormFactorMethod::rays).prepare(mesh, options), {}};
+  Chosen rays{prepareMethod(FormFactorMethod::rays, mesh, options), {}};
   rays.plan = rays.method->plan(progress);
   const double most = secondsExactMayTake(mesh, options, rays.plan.seconds);
   const bool prepared = exact.method->secondsPreparing() > 0;

@@ -85,7 +85,7 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   if (used.method == FormFactorMethod::automatic) {
     chosen = chooseMethod(*mesh, used, progress);
   } else {
-    chosen.method = entryOf(used.method).prepare(*mesh, used);
+    chosen.method = prepareMethod(used.method, *mesh, used);
     chosen.plan = chosen.method->plan(progress);
   }
   auto& [method, plan] = chosen;

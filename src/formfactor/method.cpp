@@ -33,13 +33,22 @@ FormFactors PreparedMethod::compute(KnownRows known, Progress& progress, RowJour
                                     Processes* processes) const {
   std::optional<std::size_t> exact_rows;
   if (roomForExactRows() && !options_.exact_rows.empty()) exact_rows = known.rows.size();
-  FormFactors result = make(std::move(known), progress, journal, processes);
+  const RowMemory held = memory(processes);
+  const std::size_t rows = traits_.counts_unknowns ? mesh_.unknowns() : mesh_.size();
+  FormFactors result =
+      make(std::move(known), {progress, journal, processes, makeRowMemory(held, options_, rows)});
   result.method = traits_.method;
   result.report.polygons = mesh_.polygons.size();
-  result.report.estimated_bytes = memory(processes).bytes;
+  result.report.estimated_bytes = held.bytes;
   result.report.exact_rows = exact_rows;
   if (mesh_.clusters && !traits_.counts_unknowns) return clusterFactors(result, mesh_, progress);
   return result;
+}
+
+std::shared_ptr<const ExchangeMatrix> PreparedMethod::computeForOthers(Processes& processes,
+                                                                       Progress& progress,
+                                                                       RowJournal* journal) const {
+  return share({progress, journal, &processes});
 }
 
 }  // namespace radiosity

@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "base/processes.h"
 #include "formfactor/known_rows.h"
+#include "formfactor/row_blocks.h"
 #include "formfactor/row_memory.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
@@ -41,9 +41,12 @@ class PreparedMethod {
   /// Prepares the mesh and foresees the cost; a second call goes on where the first was Cancelled.
   FormFactorPlan plan(Progress& progress);
   /// Computes what was planned, any number of times. `journal` and `processes` may be null; of
-  /// `processes` the others are in MethodEntry::rows_for_others.
+  /// `processes` the others are in computeForOthers().
   FormFactors compute(KnownRows known, Progress& progress, RowJournal* journal,
                       Processes* processes) const;
+  /// The rows that fall to this process while process 0 is in compute(). Needs no plan.
+  std::shared_ptr<const ExchangeMatrix> computeForOthers(Processes& processes, Progress& progress,
+                                                         RowJournal* journal) const;
 
   /// Seconds of plan() for what compute() needs.
   double secondsPreparing() const { return seconds_preparing_; }
@@ -54,10 +57,6 @@ class PreparedMethod {
   const PatchMesh& mesh() const { return mesh_; }
   const FormFactorOptions& options() const { return options_; }
   double tolerance() const { return options_.toleranceOf(traits_.method); }
-  /// As foreseen; of several processes, that of process 0 where rows stay with those that make
-  /// them.
-  RowMemory memory(const Processes* processes) const;
-
   /// Seconds and tolerance of the rows, the memory in which they are made and, of that, the
   /// matrix.
   struct Cost {
@@ -68,8 +67,11 @@ class PreparedMethod {
 
  private:
   virtual Cost foresee(Progress& progress) = 0;
-  virtual FormFactors make(KnownRows known, Progress& progress, RowJournal* journal,
-                           Processes* processes) const = 0;
+  virtual FormFactors make(KnownRows known, const RowRun& run) const = 0;
+  virtual std::shared_ptr<const ExchangeMatrix> share(const RowRun& run) const = 0;
+  /// As foreseen; of several processes, that of process 0 where rows stay with those that make
+  /// them.
+  RowMemory memory(const Processes* processes) const;
 
   const PatchMesh& mesh_;
   FormFactorOptions options_;
@@ -78,16 +80,8 @@ class PreparedMethod {
   std::size_t matrix_bytes_ = 0;
 };
 
-struct MethodEntry {
-  FormFactorMethod method;
-  std::unique_ptr<PreparedMethod> (*prepare)(const PatchMesh&, const FormFactorOptions&);
-  /// For the other processes, while process 0 is in compute(): makes the rows that fall to this
-  /// one.
-  std::shared_ptr<const ExchangeMatrix> (*rows_for_others)(const PatchMesh&,
-                                                           const FormFactorOptions&, Processes&,
-                                                           Progress&, RowJournal*);
-};
-/// Of a method that can be asked for, and not automatic.
-const MethodEntry& entryOf(FormFactorMethod method);
+/// `method`: one that can be asked for, and not automatic. `mesh` is kept by reference.
+std::unique_ptr<PreparedMethod> prepareMethod(FormFactorMethod method, const PatchMesh& mesh,
+                                              const FormFactorOptions& options);
 
 }  // namespace radiosity

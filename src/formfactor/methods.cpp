@@ -8,14 +8,23 @@
 #include "formfactor/rays/ray_factors.h"
 
 namespace radiosity {
+namespace {
 
-const MethodEntry& entryOf(FormFactorMethod method) {
-  static constexpr std::array kEntries{
-      MethodEntry{FormFactorMethod::exact, &prepareExact, &exactRowsForOthers},
-      MethodEntry{FormFactorMethod::rays, &prepareRays, &rayRowsForOthers},
-      MethodEntry{FormFactorMethod::hemicube, &prepareHemicubes, &hemicubeRowsForOthers}};
+struct MethodEntry {
+  FormFactorMethod method;
+  std::unique_ptr<PreparedMethod> (*prepare)(const PatchMesh&, const FormFactorOptions&);
+};
+
+constexpr std::array kEntries{MethodEntry{FormFactorMethod::exact, &prepareExact},
+                              MethodEntry{FormFactorMethod::rays, &prepareRays},
+                              MethodEntry{FormFactorMethod::hemicube, &prepareHemicubes}};
+
+}  // namespace
+
+std::unique_ptr<PreparedMethod> prepareMethod(FormFactorMethod method, const PatchMesh& mesh,
+                                              const FormFactorOptions& options) {
   for (const MethodEntry& entry : kEntries) {
-    if (entry.method == method) return entry;
+    if (entry.method == method) return entry.prepare(mesh, options);
   }
   throw std::logic_error("no method that computes form factors");
 }

@@ -77,7 +77,8 @@ std::shared_ptr<const ExchangeMatrix> shareFormFactors(const PatchMesh& mesh, Pr
         "the mesh is not that of process 0: give all processes the same scene file and "
         "the same program");
   }
-  return entryOf(options.method).rows_for_others(mesh, options, processes, progress, journal);
+  return prepareMethod(options.method, mesh, options)
+      ->computeForOthers(processes, progress, journal);
 }
 
 }  // namespace radiosity

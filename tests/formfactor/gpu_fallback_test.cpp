@@ -135,8 +135,7 @@ TEST(GpuFallback, TheProcessorDrawsTheRestOfALostDevice) {
   for (const std::size_t lives : {0, 4, 100}) {
     HemicubeScene scene(mesh, options);
     scene.gpu = std::make_unique<FailingEye>(scene.rows, lives);
-    const FormFactors seen =
-        hemicubeFactors(mesh, scene, {}, RowMemory(), options, silent, nullptr, nullptr);
+    const FormFactors seen = hemicubeFactors(mesh, scene, {}, options, {silent});
     EXPECT_EQ(seen.report.hemicube.hemicubes, expected.report.hemicube.hemicubes);
     EXPECT_EQ(seen.report.hemicube.pixels, expected.report.hemicube.pixels);
     EXPECT_TRUE(seen.report.closed);
@@ -204,8 +203,7 @@ TEST(GpuFallback, TheProcessorDrawsASceneThatTheDeviceCannotHold) {
   for (const EyeChoice choice : {EyeChoice::gl, EyeChoice::automatic}) {
     HemicubeScene scene(mesh, smallHemicubes());
     scene.gpu = openGpuEye(choice, scene.rows.scene(), mesh, scene.rows.weights(), FullEyes(true));
-    const FormFactors seen =
-        hemicubeFactors(mesh, scene, {}, RowMemory(), smallHemicubes(), silent, nullptr, nullptr);
+    const FormFactors seen = hemicubeFactors(mesh, scene, {}, smallHemicubes(), {silent});
     for (std::size_t i = 0; i < mesh.size(); ++i) {
       EXPECT_EQ(seen.matrix->at(0, i), expected.matrix->at(0, i));
     }

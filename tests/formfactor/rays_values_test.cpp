@@ -389,8 +389,7 @@ TEST(RayAim, RowsShareTheRaysAllowedAndTheReportNamesTheirTolerance) {
   aim.most_rays = 1e6;
   RayReport report;
   Progress silent;
-  const std::vector<RayRow> rows =
-      castRows(scene, {}, aim, report, silent, nullptr, nullptr, nullptr);
+  const std::vector<RayRow> rows = castRows(scene, {}, aim, report, {silent});
   EXPECT_GT(report.rays, 5e5);  // rows are cast to the next 2^k or 3 2^k, down to half
   EXPECT_LE(report.rays, 1e6);
   ASSERT_TRUE(report.loosened_tolerance);

@@ -1,24 +1,17 @@
 #include "formfactor/hemicube/hemicube_factors.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
-#include "base/byte_stream.h"
 #include "base/figure_text.h"
-#include "base/hand_out.h"
 #include "base/made.h"
 #include "base/parallel.h"
 #include "formfactor/closed_rows.h"
-#include "formfactor/hemicube/gpu_rows.h"
-#include "formfactor/hemicube/kept_row.h"
-#include "formfactor/hemicube/row_builder.h"
 #include "formfactor/known_entries.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/shared_rows.h"
@@ -28,269 +21,6 @@
 
 namespace radiosity {
 namespace {
-
-/// Of the view of a closed row a share this large may show between faces, which meet but for
-/// rounding: some pixels.
-constexpr double kMostLeaks = 1e-3;
-
-/// Memory in which a thread stores rows, and their counts.
-struct RowStore {
-  PackedRow row;
-  HemicubeReport counts;
-};
-
-/// Memory in which a thread makes rows.
-struct Worker {
-  Hemicube hemicube;
-  std::vector<std::uint8_t> hidden;
-  RowStore store;
-};
-
-/// The rows of one computation.
-struct Rows {
-  const HemicubeScene& scene;
-  const KnownEntries& known;  ///< by patch
-  ClosedRows& closed;
-  RowJournal* journal;
-  RowMatrix& matrix;
-  FormFactors& result;
-  std::vector<std::vector<SeenBack>>& seen_backs;
-  std::vector<std::uint8_t> made;  ///< by row; 1 also for empty ones
-};
-
-/// Stores row i as it was seen, or with its near entries corrected. The sky of a closed one is
-/// leaks: it goes without.
-void storeRow(std::size_t i, const HemicubeView& view, bool closed, const NearPairs* near_pairs,
-              PackedRow& row, Rows& rows, HemicubeReport& counts) {
-  FormFactors& result = rows.result;
-  const std::size_t n = result.fronts.size();
-  row.pack(view, n);
-  const double sky = closed ? 0.0 : view.sky;
-  double rest = closed ? 1 / (1 - view.sky) : 1.0;
-  for (double& value : row.values) value *= rest;
-  result.fronts[i] = rest * view.fronts;
-  result.sky[i] = sky;
-  if (near_pairs != nullptr) {
-    const auto [replaced, scaled] = near_pairs->correct(i, row, rest * view.backs + sky, closed);
-    counts.near_pairs += replaced;
-    counts.capped += scaled.capped ? 1 : 0;
-    rest *= scaled.rest;
-    result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
-    result.sky[i] = scaled.rest * sky + scaled.sky;
-  }
-  rows.matrix.setRow(i, row.columns, row.values);
-  result.backs[i] = rest * view.backs;
-  for (std::size_t item = n; view.backs > 0 && item < view.items.size(); ++item) {
-    if (!(view.items[item] > 0)) continue;
-    rows.seen_backs[i].push_back({Index(item - n), rest * view.items[item]});
-  }
-}
-
-/// Puts the known entries into row i, and scales the rest. A row that is known whole is scaled to
-/// its account.
-void replaceKnown(Rows& rows, std::size_t i, PackedRow& row) {
-  const auto entries = rows.known.at(i);
-  FormFactors& result = rows.result;
-  const double area = rows.matrix.area()[i];
-  if (rows.known.empty() || !(area > 0)) return;
-  row.columns.clear();
-  row.values.clear();
-  std::vector<std::uint8_t> replaced;
-  auto next = entries.begin();
-  const auto addKnownBefore = [&](std::size_t end) {
-    for (; next != entries.end() && next->position < end; ++next) {
-      row.columns.push_back(next->position);
-      row.values.push_back(next->exchange / area);
-      replaced.push_back(1);
-    }
-  };
-  const bool whole = rows.known.rowAt(i) != nullptr;
-  bool seen = false;  // known ones, from the eye
-  rows.matrix.forRow(i, [&](Index j, double value) {
-    if (whole || rows.known.rowAt(j) != nullptr) {
-      seen = true;
-      return;
-    }
-    addKnownBefore(j);
-    row.columns.push_back(j);
-    row.values.push_back(value);
-    replaced.push_back(0);
-  });
-  addKnownBefore(result.fronts.size());
-  if (whole) {
-    const RowAccount account = rows.known.account(i, area, rows.closed.closed(i));
-    result.fronts[i] = account.fronts;
-    result.backs[i] = account.backs;
-    result.sky[i] = account.sky;
-    rows.seen_backs[i] = rows.known.rowAt(i)->backs;
-    // All hemicubes' rows sum to what was seen, so that closed furnaces are uniform.
-    const double share = rows.known.share(i, area);
-    for (double& value : row.values) value *= account.fronts / share;
-  } else {
-    if (!seen && entries.empty()) return;
-    const PackedRow::Scaled scaled =
-        row.scaleRest(replaced, result.backs[i] + result.sky[i], rows.closed.closed(i));
-    result.backs[i] *= scaled.rest;
-    result.sky[i] = scaled.rest * result.sky[i] + scaled.sky;
-    for (SeenBack& back : rows.seen_backs[i]) back.share *= scaled.rest;
-    result.fronts[i] = std::accumulate(row.values.begin(), row.values.end(), 0.0);
-  }
-  rows.matrix.setRow(i, row.columns, row.values);
-}
-
-/// The number of rows that need not be made: empty ones and those in the journal.
-std::size_t rowsThere(const RowBuilder& rows, std::size_t n, RowJournal* journal) {
-  std::size_t found = 0;
-  std::size_t all = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (rows.isEmpty(i)) continue;
-    ++all;
-    found += journal != nullptr && journal->has(RowBlock::hemicube_row, i) ? 1 : 0;
-  }
-  if (journal != nullptr) journal->found(found, all);
-  return n - all + found;
-}
-
-/// Stores row i and keeps it. `counts`: of its look.
-void finishRow(Rows& rows, std::size_t i, const HemicubeView& view, HemicubeReport counts,
-               RowStore& store) {
-  const NearPairs* near_pairs = rows.scene.near_pairs ? &*rows.scene.near_pairs : nullptr;
-  const bool closed = rows.closed.keeps(i, view.sky, kMostLeaks);
-  storeRow(i, view, closed, near_pairs, store.row, rows, counts);
-  if (rows.journal != nullptr) {
-    keepRow(*rows.journal, i, rows.matrix, rows.result, rows.seen_backs[i], counts);
-  }
-  replaceKnown(rows, i, store.row);
-  store.counts += counts;
-  rows.made[i] = 1;
-}
-
-struct RowRange {
-  std::size_t first;
-  std::size_t last;  ///< one beyond
-  std::size_t size() const { return last - first; }
-};
-
-/// Takes the rows that need not be made: empty ones and those in the journal.
-HemicubeReport takeRows(Rows& rows, RowRange range, const Progress& progress) {
-  tbb::enumerable_thread_specific<RowStore> stores;
-  parallelFor(range.size(), 1, [&](std::size_t k) {
-    if (progress.cancelled()) return;
-    const std::size_t i = range.first + k;
-    rows.made[i] = rows.scene.rows.isEmpty(i);
-    if (rows.made[i] != 0 || rows.journal == nullptr) return;
-    RowStore& store = stores.local();
-    const bool taken =
-        takeRow(*rows.journal, i, rows.matrix, rows.result, rows.seen_backs[i], store.counts);
-    rows.made[i] = taken ? 1 : 0;
-    if (rows.made[i] == 0) return;
-    rows.closed.keeps(i, rows.result.sky[i], 0);
-    replaceKnown(rows, i, store.row);
-  });
-  HemicubeReport all;
-  for (const RowStore& store : stores) all += store.counts;
-  return all;
-}
-
-/// Makes rows by the GPU's eye. If that gives up, a note says why; other rows are still to be made.
-HemicubeReport makeRowsByGpu(Rows& rows, Progress& progress) {
-  std::vector<Index> patches;
-  for (std::size_t i = 0; i < rows.made.size(); ++i) {
-    if (rows.made[i] == 0) patches.push_back(Index(i));
-  }
-  tbb::enumerable_thread_specific<RowStore> stores;
-  const std::string problem = lookFromPatches(
-      *rows.scene.gpu, rows.scene.rows, patches,
-      [&](std::size_t i, const HemicubeView& view, const HemicubeReport& counts) {
-        finishRow(rows, i, view, counts, stores.local());
-      },
-      progress);
-  const std::string& name = rows.scene.gpu->device().name;
-  std::vector<Note>& notes = rows.result.report.notes;
-  const auto left = std::size_t(std::count(rows.made.begin(), rows.made.end(), 0));
-  const bool drew = left < patches.size();
-  if (drew) notes.push_back({Severity::info, "hemicubes drawn by " + name});
-  if (!problem.empty()) {
-    notes.push_back(
-        {Severity::warning, fmt::format("{}: {}; {} {} hemicubes were drawn by the processor", name,
-                                        problem, drew ? "the other" : "all", countText(left))});
-  }
-  HemicubeReport all;
-  for (const RowStore& store : stores) all += store.counts;
-  return all;
-}
-
-using Workers = tbb::enumerable_thread_specific<Worker>;
-
-/// Makes the rows that are left by the CPU's eye. Returns their number.
-std::size_t makeRows(Rows& rows, RowRange range, Workers& workers, Progress& progress) {
-  std::atomic<std::size_t> made{0};
-  parallelFor(range.size(), 1, [&](std::size_t k) {
-    const std::size_t i = range.first + k;
-    if (progress.cancelled() || rows.made[i] != 0) return;
-    Worker& worker = workers.local();
-    const HemicubeView& view = rows.scene.rows.look(i, worker.hemicube, worker.hidden);
-    finishRow(rows, i, view, worker.hemicube.takeCounts(), worker.store);
-    made.fetch_add(1, std::memory_order_relaxed);
-    progress.advance();
-  });
-  progress.check();
-  return made;
-}
-
-/// The counts of all workers since the last call.
-HemicubeReport takeCounts(Workers& workers) {
-  HemicubeReport all;
-  for (Worker& worker : workers) all += std::exchange(worker.store.counts, {});
-  return all;
-}
-
-/// Makes rows in blocks by all processes; process 0 gets accounts and counts of all of them.
-HemicubeReport shareRows(Processes& processes, Rows& rows, Workers& workers, Progress& progress) {
-  constexpr std::size_t kBlocksAProcess = 32;
-  constexpr std::size_t kMostBlocksAProcess = 40;  // rows stay in the process that made them
-  const std::size_t n = rows.made.size();
-  FormFactors& result = rows.result;
-  HemicubeReport all;
-  BlockWork work;
-  work.blocks = std::min(n, kBlocksAProcess * std::size_t(processes.size()));
-  work.most_a_process = kMostBlocksAProcess;
-  const auto rangeOf = [&](std::size_t block) {
-    return RowRange{block * n / work.blocks, (block + 1) * n / work.blocks};
-  };
-  work.run = [&](std::size_t block) {
-    const RowRange range = rangeOf(block);
-    HemicubeReport counts = takeRows(rows, range, progress);
-    const std::size_t made = makeRows(rows, range, workers, progress);
-    counts += takeCounts(workers);
-    ByteWriter bytes;
-    bytes.put(made);
-    bytes.put(counts);
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      bytes.put(result.fronts[i]);
-      bytes.put(result.backs[i]);
-      bytes.put(result.sky[i]);
-      bytes.putArray(std::span<const SeenBack>(rows.seen_backs[i]));
-    }
-    return std::vector<std::byte>(bytes.bytes().begin(), bytes.bytes().end());
-  };
-  work.take = [&](std::size_t block, std::span<const std::byte> from, int process) {
-    ByteReader bytes(from);
-    const auto made = bytes.get<std::size_t>();
-    if (process != 0) progress.advance(made);
-    all += bytes.get<HemicubeReport>();
-    const RowRange range = rangeOf(block);
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      result.fronts[i] = bytes.get<double>();
-      result.backs[i] = bytes.get<double>();
-      result.sky[i] = bytes.get<double>();
-      rows.seen_backs[i] = bytes.getArray<SeenBack>();
-      rows.closed.keeps(i, result.sky[i], 0);  // another process may have found it open
-    }
-  };
-  handOut(processes, work, progress);
-  return all;
-}
 
 /// The exchange known beforehand, by patch. Process 0 has it, the others get it.
 KnownEntries knownByPatch(std::vector<KnownRow> rows, std::size_t patches, Processes* processes) {
@@ -309,24 +39,10 @@ KnownEntries knownByPatch(std::vector<KnownRow> rows, std::size_t patches, Proce
   return {std::move(rows), position};
 }
 
-HemicubeReport fillRows(Rows rows, Processes* processes, Progress& progress) {
-  const RowBuilder& builder = rows.scene.rows;
-  const std::size_t n = rows.matrix.size();
-  rows.made.assign(n, 0);
-  Workers workers([&] { return Worker{builder.makeHemicube(), {}, {}}; });
-  progress.begin("form factors", n, "rows", rowsThere(builder, n, rows.journal));
-  HemicubeReport counts;
-  if (processes != nullptr) {
-    counts = shareRows(*processes, rows, workers, progress);
-  } else {
-    counts = takeRows(rows, {0, n}, progress);
-    if (rows.scene.gpu != nullptr) counts += makeRowsByGpu(rows, progress);
-    makeRows(rows, {0, n}, workers, progress);
-    counts += takeCounts(workers);
-  }
-  progress.check();
-  progress.end();
-  return counts;
+HemicubeReport fillRows(const HemicubeRows& rows, const RowRun& run) {
+  HemicubeBlocks blocks(rows, run.progress);
+  makeAllRows(blocks, run);
+  return blocks.counts();
 }
 
 /// Form factors without a matrix yet.
@@ -412,29 +128,22 @@ void checkRows(FormFactors& result) {
 
 }  // namespace
 
-HemicubeScene::HemicubeScene(const PatchMesh& mesh, const FormFactorOptions& options)
-    : rows(mesh, options), gpu(openGpuEye(options.eye, rows.scene(), mesh, rows.weights())) {
-  if (options.near_exact) near_pairs.emplace(mesh, options);
-}
-
 FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
-                            std::vector<KnownRow> known_rows, const RowMemory& memory,
-                            const FormFactorOptions& options, Progress& progress,
-                            RowJournal* journal, Processes* processes) {
+                            std::vector<KnownRow> known_rows, const FormFactorOptions& options,
+                            const RowRun& run) {
   const std::size_t n = mesh.size();
-  auto rows = std::make_shared<RowMatrix>(mesh.area, options.storedPrecision(),
-                                          makeRowMemory(memory, options, n));
+  auto rows = std::make_shared<RowMatrix>(mesh.area, options.storedPrecision(), run.scratch);
   FormFactors result = emptyAccounts(n);
   FormFactorReport& report = result.report;
   report.simd_target = scene.rows.kernels().target;
-  const KnownEntries known = knownByPatch(std::move(known_rows), n, processes);
+  const KnownEntries known = knownByPatch(std::move(known_rows), n, run.processes);
   std::vector<std::vector<SeenBack>> seen_backs(n);
   ClosedRows closed(mesh, false);
-  report.hemicube =
-      fillRows({scene, known, closed, journal, *rows, result, seen_backs, {}}, processes, progress);
+  Progress& progress = run.progress;
+  report.hemicube = fillRows({scene, known, closed, *rows, result, seen_backs}, run);
   report.empty_rows = n - report.hemicube.hemicubes;
   closed.report(mesh, report);
-  result.matrix = wholeMatrix(processes, rows, [&progress] { progress.check(); });
+  result.matrix = wholeMatrix(run.processes, rows, [&progress] { progress.check(); });
   constexpr std::size_t kSteps = 2;
   progress.begin("finishing", kSteps);
   const auto step = [&] {
@@ -470,11 +179,10 @@ class Hemicubes final : public PreparedMethod {
 
  private:
   Cost foresee(Progress& progress) override;
-  FormFactors make(KnownRows exact, Progress& progress, RowJournal* journal,
-                   Processes* processes) const override {
-    return hemicubeFactors(mesh(), made(scene_), std::move(exact.rows), memory(processes),
-                           options(), progress, journal, processes);
+  FormFactors make(KnownRows exact, const RowRun& run) const override {
+    return hemicubeFactors(mesh(), made(scene_), std::move(exact.rows), options(), run);
   }
+  std::shared_ptr<const ExchangeMatrix> share(const RowRun& run) const override;
 
   std::optional<HemicubeScene> scene_;
 };
@@ -495,26 +203,22 @@ Hemicubes::Cost Hemicubes::foresee(Progress& progress) {
   return cost;
 }
 
+std::shared_ptr<const ExchangeMatrix> Hemicubes::share(const RowRun& run) const {
+  const HemicubeScene scene(mesh(), options());
+  auto rows = std::make_shared<RowMatrix>(mesh().area, options().storedPrecision());
+  FormFactors result = emptyAccounts(mesh().size());
+  std::vector<std::vector<SeenBack>> seen_backs(mesh().size());
+  const KnownEntries known = knownByPatch({}, mesh().size(), run.processes);
+  ClosedRows closed(mesh(), false);
+  fillRows({scene, known, closed, *rows, result, seen_backs}, run);
+  return rows;
+}
+
 }  // namespace
 
 std::unique_ptr<PreparedMethod> prepareHemicubes(const PatchMesh& mesh,
                                                  const FormFactorOptions& options) {
   return std::make_unique<Hemicubes>(mesh, options);
-}
-
-std::shared_ptr<const ExchangeMatrix> hemicubeRowsForOthers(const PatchMesh& mesh,
-                                                            const FormFactorOptions& options,
-                                                            Processes& processes,
-                                                            Progress& progress,
-                                                            RowJournal* journal) {
-  const HemicubeScene scene(mesh, options);
-  auto rows = std::make_shared<RowMatrix>(mesh.area, options.storedPrecision());
-  FormFactors result = emptyAccounts(mesh.size());
-  std::vector<std::vector<SeenBack>> seen_backs(mesh.size());
-  const KnownEntries known = knownByPatch({}, mesh.size(), &processes);
-  ClosedRows closed(mesh, false);
-  fillRows({scene, known, closed, journal, *rows, result, seen_backs, {}}, &processes, progress);
-  return rows;
 }
 
 }  // namespace radiosity

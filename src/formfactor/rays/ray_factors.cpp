@@ -15,9 +15,9 @@
 #include "base/processor_clock.h"
 #include "base/scratch_rows.h"
 #include "formfactor/closed_rows.h"
+#include "formfactor/rays/cast_blocks.h"
 #include "formfactor/rays/ray_model.h"
 #include "formfactor/rays/ray_rounds.h"
-#include "formfactor/rays/shared_rays.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/dealt_rows.h"
 #include "matrix/shared_rows.h"
@@ -287,8 +287,8 @@ class Rays final : public PreparedMethod {
 
  private:
   Cost foresee(Progress& progress) override;
-  FormFactors make(KnownRows exact, Progress& progress, RowJournal* journal,
-                   Processes* processes) const override;
+  FormFactors make(KnownRows exact, const RowRun& run) const override;
+  std::shared_ptr<const ExchangeMatrix> share(const RowRun& run) const override;
 
   std::optional<RayScene> scene_;
   RayEstimate estimate_;
@@ -315,13 +315,13 @@ Rays::Cost Rays::foresee(Progress& progress) {
   return cost;
 }
 
-FormFactors Rays::make(KnownRows exact, Progress& progress, RowJournal* journal,
-                       Processes* processes) const {
+FormFactors Rays::make(KnownRows exact, const RowRun& run) const {
   const RayScene& scene = made(scene_);
   const std::size_t n = scene.size();
   FormFactors result;
   FormFactorReport& report = result.report;
-  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(memory(processes), options(), n);
+  Progress& progress = run.progress;
+  const std::shared_ptr<ScratchMemory>& scratch = run.scratch;
   std::vector<double> area(n);
   for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
   report.empty_rows = std::size_t(std::count(area.begin(), area.end(), 0.0));
@@ -331,8 +331,7 @@ FormFactors Rays::make(KnownRows exact, Progress& progress, RowJournal* journal,
 
   RayAim aim(options());
   aim.foreseen_rays = estimate_.rays;
-  std::vector<RayRow> rows =
-      castRows(scene, known, aim, report.rays, progress, journal, scratch.get(), processes);
+  std::vector<RayRow> rows = castRows(scene, known, aim, report.rays, run);
   noteLoosened(options(), report);
   const ClosedRows closed = closedRows(mesh(), scene, rows, report);
   const auto matrix = std::make_shared<SymmetricMatrix>(std::move(area), scene.order(),
@@ -355,8 +354,19 @@ FormFactors Rays::make(KnownRows exact, Progress& progress, RowJournal* journal,
   accountForBacks(mesh(), scene.order(), matrix->area(), beside.seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
   result.matrix = matrix;
-  if (processes != nullptr) result.matrix = shared(*processes, progress, *matrix);
+  if (run.processes != nullptr) result.matrix = shared(*run.processes, progress, *matrix);
   return result;
+}
+
+std::shared_ptr<const ExchangeMatrix> Rays::share(const RowRun& run) const {
+  const RowRun unkept{run.progress, nullptr, run.processes};  // process 0 keeps all rows
+  const RayScene scene(mesh(), options().seed);
+  for (;;) {
+    CastBlocks round(scene, unkept);
+    if (round.count() == 0) break;
+    makeBlocks(round, unkept);
+  }
+  return receiveRows(*run.processes);
 }
 
 }  // namespace
@@ -364,14 +374,6 @@ FormFactors Rays::make(KnownRows exact, Progress& progress, RowJournal* journal,
 std::unique_ptr<PreparedMethod> prepareRays(const PatchMesh& mesh,
                                             const FormFactorOptions& options) {
   return std::make_unique<Rays>(mesh, options);
-}
-
-std::shared_ptr<const ExchangeMatrix> rayRowsForOthers(const PatchMesh& mesh,
-                                                       const FormFactorOptions& options,
-                                                       Processes& processes, Progress& progress,
-                                                       RowJournal* /*journal*/) {
-  castForOthers(processes, RayScene(mesh, options.seed), progress);
-  return receiveRows(processes);
 }
 
 }  // namespace radiosity

@@ -29,11 +29,4 @@ RayEstimate estimateRays(const RayScene& scene, const FormFactorOptions& options
 std::unique_ptr<PreparedMethod> prepareRays(const PatchMesh& mesh,
                                             const FormFactorOptions& options);
 
-/// Casts a share of the rays. Returns the rows that fell to this process once process 0 had merged
-/// all.
-std::shared_ptr<const ExchangeMatrix> rayRowsForOthers(const PatchMesh& mesh,
-                                                       const FormFactorOptions& options,
-                                                       Processes& processes, Progress& progress,
-                                                       RowJournal* journal);
-
 }  // namespace radiosity

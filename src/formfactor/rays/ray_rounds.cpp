@@ -9,10 +9,10 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/scratch_rows.h"
+#include "formfactor/rays/cast_blocks.h"
 #include "formfactor/rays/ray_model.h"
 #include "formfactor/rays/ray_scene.h"
 #include "formfactor/rays/round_journal.h"
-#include "formfactor/rays/shared_rays.h"
 
 namespace radiosity {
 namespace {
@@ -26,20 +26,19 @@ constexpr int kMostRounds = 24;
 class Rounds {
  public:
   Rounds(const RayScene& scene, const KnownEntries& known, const RayAim& aim, RayReport& report,
-         Progress& progress, RowJournal* journal, ScratchMemory* scratch, Processes* processes)
+         const RowRun& run)
       : scene_(scene),
         known_(known),
         aim_(aim),
         report_(report),
-        progress_(progress),
-        journal_(journal, scene.size(), known.identity()),
-        scratch_(scratch),
-        processes_(processes),
+        run_(run),
+        progress_(run.progress),
+        journal_(run.journal, scene.size(), known.identity()),
         before_(scene.size()),
         now_(scene.size()) {
     rows_.reserve(scene.size());
     for (std::size_t k = 0; k < scene.size(); ++k) {
-      rows_.emplace_back(rowMemory(scratch));
+      rows_.emplace_back(rowMemory(run.scratch.get()));
     }
   }
 
@@ -60,7 +59,7 @@ class Rounds {
       journal_.keep(report_.rounds,
                     {rays, before_, now_, common_, usual_norm_, usual_whole_norm_, loosened_});
     }
-    if (processes_ != nullptr) endCasting(*processes_, progress_);
+    CastBlocks::endRounds(run_);
     finish();
     return std::move(rows_);
   }
@@ -109,14 +108,9 @@ class Rounds {
       --next;
     }
     for (; next < continued.size() && !progress_.cancelled(); ++next) {
-      castRow(continued[next], k, targets[std::size_t(continued[next])][k]);
+      scene_.cast(k, targets[std::size_t(continued[next])][k], rows_[k], progress_);
+      touchRows(run_.scratch.get(), rows_[k].bytes());
     }
-  }
-
-  void castRow(int round, std::size_t k, std::uint32_t rays) {
-    scene_.cast(k, rays, rows_[k], progress_);
-    touchRows(scratch_, rows_[k].bytes());
-    if (!progress_.cancelled()) journal_.keepRow(round, k, rows_[k]);
   }
 
   /// Continues rows to as many rays as given, if that is more than they have.
@@ -144,10 +138,10 @@ class Rounds {
       progress_.begin("form factors", std::max(least, std::size_t(aim_.foreseen_rays)), "rays",
                       report_.rays + kReplicates * kept);
     }
-    if (processes_ != nullptr) {
-      castByAll(todo, rays);
-    } else {
-      castHere(todo, rays);
+    const std::vector<RowToCast> left = takeKept(todo, rays);
+    if (!left.empty()) {
+      CastBlocks blocks(scene_, left, rows_, report_.rounds, run_);
+      makeBlocks(blocks, run_);
     }
     progress_.check();
     progress_.end();
@@ -157,30 +151,20 @@ class Rounds {
     return true;
   }
 
-  void castHere(const std::vector<Index>& todo, const std::vector<std::uint32_t>& rays) {
-    parallelFor(todo.size(), 1, [&](std::size_t t) {
-      if (progress_.cancelled()) return;
-      const std::size_t k = todo[t];
-      const std::uint32_t more = rays[k] - rows_[k].rays;
-      if (journal_.takeRow(report_.rounds, k, rays[k], rows_[k])) return;
-      castRow(report_.rounds, k, rays[k]);
-      progress_.advance(kReplicates * more);
+  /// Takes what the journal has of a round, and returns the rest.
+  std::vector<RowToCast> takeKept(const std::vector<Index>& todo,
+                                  const std::vector<std::uint32_t>& rays) {
+    std::vector<std::uint32_t> from(todo.size());
+    for (std::size_t t = 0; t < todo.size(); ++t) from[t] = rows_[todo[t]].rays;
+    parallelFor(todo.size(), 16, [&](std::size_t t) {
+      const Index k = todo[t];
+      if (journal_.takeRow(report_.rounds, k, rays[k], rows_[k])) from[t] = rays[k];
     });
-  }
-
-  void castByAll(const std::vector<Index>& todo, const std::vector<std::uint32_t>& rays) {
     std::vector<RowToCast> left;
-    for (const Index k : todo) {
-      if (journal_.takeRow(report_.rounds, k, rays[k], rows_[k])) continue;
-      left.push_back({k, rows_[k].rays, rays[k]});
+    for (std::size_t t = 0; t < todo.size(); ++t) {
+      if (from[t] < rays[todo[t]]) left.push_back({todo[t], from[t], rays[todo[t]]});
     }
-    if (left.empty()) return;
-    const auto take = [&](const RowToCast& row, const RayRow& counted) {
-      rows_[row.position].add(counted);
-      touchRows(scratch_, rows_[row.position].bytes());
-      journal_.keepRow(report_.rounds, row.position, rows_[row.position]);
-    };
-    castTogether(*processes_, scene_, std::move(left), take, progress_);
+    return left;
   }
 
   /// The relative error that a row is to bring down: that of its fronts over their norm or, if
@@ -288,10 +272,11 @@ class Rounds {
     std::vector<std::uint8_t> wanted(rows_.size());
     for (std::size_t k = 0; k < rows_.size(); ++k) wanted[k] = rays[k] > 0;
     std::vector<RowAccuracy> measured(rows_.size());
-    forMergedRows(rows_, scene_.area(), known_, wanted, scratch_, [&](const MergedRow& merged) {
-      const std::size_t k = merged.position;
-      measured[k] = accuracyOf(merged, rows_[k], scene_.area()[k]);
-    });
+    forMergedRows(rows_, scene_.area(), known_, wanted, run_.scratch.get(),
+                  [&](const MergedRow& merged) {
+                    const std::size_t k = merged.position;
+                    measured[k] = accuracyOf(merged, rows_[k], scene_.area()[k]);
+                  });
     for (const RowAccuracy& row : measured) common_.add(row);
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (wanted[k] == 0) continue;
@@ -338,10 +323,9 @@ class Rounds {
   double loosened_ = 1;
   std::uint32_t most_of_unknown_ = kMostRays;
   RayReport& report_;
+  RowRun run_;
   Progress& progress_;
   RoundJournal journal_;
-  ScratchMemory* scratch_;
-  Processes* processes_;
   std::vector<RayRow> rows_;
   std::vector<RowState> before_;
   std::vector<RowState> now_;
@@ -386,9 +370,8 @@ double loosening(double most, const std::function<double(double)>& raysAt) {
 }
 
 std::vector<RayRow> castRows(const RayScene& scene, const KnownEntries& known, const RayAim& aim,
-                             RayReport& report, Progress& progress, RowJournal* journal,
-                             ScratchMemory* scratch, Processes* processes) {
-  return Rounds(scene, known, aim, report, progress, journal, scratch, processes).run();
+                             RayReport& report, const RowRun& run) {
+  return Rounds(scene, known, aim, report, run).run();
 }
 
 }  // namespace radiosity

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "formfactor/rays/ray_rows.h"
+#include "formfactor/row_blocks.h"
 #include "radiosity/base.h"
 #include "radiosity/form_factors.h"
 
 namespace radiosity {
 
-class Processes;
 class RayScene;
 
 /// Rays of the first round, in each replicate.
@@ -43,11 +43,8 @@ struct RayAim {
 double loosening(double most, const std::function<double(double)>& raysAt);
 
 /// Casts all rows, by position. `known`: entries that are not estimated. Fills the report's figures
-/// of rays and rounds. `journal`: null if nothing is kept. `scratch`: holds the rows' entries;
-/// null: in memory. `processes`: share the casting, the others in castForOthers() (shared_rays.h);
-/// null: this one alone.
+/// of rays and rounds. Other processes are in CastBlocks meanwhile, round by round.
 std::vector<RayRow> castRows(const RayScene& scene, const KnownEntries& known, const RayAim& aim,
-                             RayReport& report, Progress& progress, RowJournal* journal,
-                             ScratchMemory* scratch, Processes* processes);
+                             RayReport& report, const RowRun& run);
 
 }  // namespace radiosity

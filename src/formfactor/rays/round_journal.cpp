@@ -72,20 +72,14 @@ RayRow takeRayRow(ByteReader& bytes) {
   return row;
 }
 
-void RoundJournal::keepRow(int round, std::size_t position, const RayRow& row) const {
-  if (journal_ == nullptr) return;
-  ByteWriter bytes;
-  putRayRow(row, bytes);
-  journal_->keep(RowBlock::ray_row, number(round, position), bytes.bytes());
-}
-
 bool RoundJournal::hasRow(int round, std::size_t position) const {
-  return journal_ != nullptr && journal_->has(RowBlock::ray_row, number(round, position));
+  return journal_ != nullptr && journal_->has(RowBlock::ray_row, number(round, position, rows_));
 }
 
 bool RoundJournal::takeRow(int round, std::size_t position, std::uint32_t rays, RayRow& row) const {
   if (!hasRow(round, position)) return false;
-  const std::vector<std::byte> block = journal_->kept(RowBlock::ray_row, number(round, position));
+  const std::vector<std::byte> block =
+      journal_->kept(RowBlock::ray_row, number(round, position, rows_));
   ByteReader bytes(block);
   RayRow kept = takeRayRow(bytes);
   if (!bytes.isWhole() || kept.rays != rays) return false;

@@ -50,8 +50,10 @@ class RoundJournal {
   void keep(int round, const RayRound& decided) const;
   std::optional<RayRound> take(int round) const;
 
-  /// A row at the end of a round that has continued it.
-  void keepRow(int round, std::size_t position, const RayRow& row) const;
+  /// The block of a row at the end of a round that has continued it; `rows` in all.
+  static std::uint64_t number(int round, std::size_t position, std::size_t rows) {
+    return std::uint64_t(round) * rows + position;
+  }
   bool hasRow(int round, std::size_t position) const;
   /// `rays`: what the row must then have. False, with `row` unchanged, if it is not there.
   bool takeRow(int round, std::size_t position, std::uint32_t rays, RayRow& row) const;
@@ -62,9 +64,6 @@ class RoundJournal {
   }
 
  private:
-  std::uint64_t number(int round, std::size_t position) const {
-    return std::uint64_t(round) * rows_ + position;
-  }
   RowJournal* journal_;
   std::size_t rows_;
   std::uint64_t known_;

@@ -1,9 +1,6 @@
 #include "formfactor/exact/assembly/exact_factors.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +9,10 @@
 #include "base/figure_text.h"
 #include "base/made.h"
 #include "base/processor_clock.h"
-#include "base/thread_order.h"
 #include "formfactor/closed_rows.h"
 #include "formfactor/exact/assembly/exact_scene.h"
 #include "formfactor/exact/assembly/row_sample.h"
-#include "formfactor/exact/assembly/shared_tasks.h"
-#include "formfactor/exact/assembly/task_journal.h"
+#include "formfactor/exact/assembly/task_blocks.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/dealt_rows.h"
 #include "matrix/shared_rows.h"
@@ -93,41 +88,12 @@ struct RowStore {
   std::optional<Emitters> emitters;
 };
 
-/// Makes all rows, in parallel, or the share of this process. Sums are made in a tree that depends
-/// on the tasks alone.
-RowSums fillRows(const RowContext& context, const RowTasks& tasks, RowJournal* journal,
-                 Processes* processes, Progress& progress) {
-  const TaskJournal kept(journal, context, tasks);
-  tbb::enumerable_thread_specific<RowAssembly> workers([&] { return RowAssembly(context); });
-  using Range = tbb::blocked_range<std::size_t>;
-  const auto sumTasks = [&](std::size_t begin, std::size_t end) {
-    const ThreadOrder order;
-    return tbb::parallel_deterministic_reduce(
-        Range(begin, end, 1), RowSums(context.order.ranked),
-        [&](const Range& range, RowSums part) {
-          const ThreadOrder::Body ordered(order);
-          for (std::size_t t = range.begin(); t != range.end(); ++t) {
-            // A leaf of the tree is one task: `part` holds the sums of no other.
-            if (kept.take(t, part)) continue;
-            const auto rows = tasks[t];
-            workers.local().run(rows, part);
-            kept.keep(t, part);
-            const std::vector<Index>& rank = context.order.rank;
-            progress.advance(rank[rows.back().end - 1] + 1 - rank[rows.front().first]);
-          }
-          return part;
-        },
-        [](RowSums a, const RowSums& b) {
-          a += b;
-          return a;
-        });
-  };
-  progress.begin("form factors", context.order.ranked, "rows", kept.rows());
-  RowSums sums = processes != nullptr ? shareTasks(*processes, context, tasks, sumTasks, progress)
-                                      : sumTasks(0, tasks.size());
-  progress.check();
-  progress.end();
-  return sums;
+RowSums fillRows(RowStore& rows, const ExactScene& scene, const ExactKernels& kernels,
+                 std::size_t recheck_every, const RowRun& run) {
+  const RowContext context = rows.context(scene, kernels, recheck_every, run.progress);
+  TaskBlocks blocks(context, scene.tasks);
+  makeAllRows(blocks, run);
+  return blocks.sums();
 }
 
 void reportCounts(const ExactScene& scene, const RowSums& sums, ExactReport& report) {
@@ -259,8 +225,8 @@ class Exact final : public PreparedMethod {
 
  private:
   Cost foresee(Progress& progress) override;
-  FormFactors make(KnownRows known, Progress& progress, RowJournal* journal,
-                   Processes* processes) const override;
+  FormFactors make(KnownRows known, const RowRun& run) const override;
+  std::shared_ptr<const ExchangeMatrix> share(const RowRun& run) const override;
 
   std::optional<ExactScene> scene_;
   std::optional<RowSample> sample_;  ///< of the scene, while it is planned
@@ -293,8 +259,7 @@ Exact::Cost Exact::foresee(Progress& progress) {
   return cost;
 }
 
-FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* journal,
-                        Processes* processes) const {
+FormFactors Exact::make(KnownRows /*known*/, const RowRun& run) const {
   const ExactScene& scene = made(scene_);
   const ExactKernels& kernels = made(kernels_);
   const std::size_t n = mesh().size();
@@ -302,20 +267,18 @@ FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* jou
   FormFactorReport& report = result.report;
   report.simd_target = clipKernels(options().simd).target;
   report.empty_rows = n - scene.order.ranked;
-  const std::shared_ptr<ScratchMemory> scratch = makeRowMemory(memory(processes), options(), n);
 
   std::vector<Index> emitting = emittersOf(options(), mesh().unknowns());
   std::size_t recheck_every = recheckEvery(estimate_.occluded_pairs, tolerance());
-  if (processes != nullptr) {
-    processes->broadcastValue(recheck_every);
-    processes->broadcastArray(emitting);
+  if (run.processes != nullptr) {
+    run.processes->broadcastValue(recheck_every);
+    run.processes->broadcastArray(emitting);
   }
-  RowStore rows(mesh(), scene, options(), emitting, scratch);
-  const RowSums sums = fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks,
-                                journal, processes, progress);
-  const auto check = [&] { progress.check(); };
-  if (processes != nullptr) evenOut(*processes, *rows.matrix, check);
-  result.matrix = wholeMatrix(processes, rows.matrix, check);
+  RowStore rows(mesh(), scene, options(), emitting, run.scratch);
+  const RowSums sums = fillRows(rows, scene, kernels, recheck_every, run);
+  const auto check = [&run] { run.progress.check(); };
+  if (run.processes != nullptr) evenOut(*run.processes, *rows.matrix, check);
+  result.matrix = wholeMatrix(run.processes, rows.matrix, check);
   result.backs = std::move(rows.backs);
   result.sky.assign(n, 0.0);
   const Stopwatch finishing;
@@ -326,16 +289,29 @@ FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* jou
   setAccounts(mesh(), scene.order, tolerance(), closed, result);
   findUnexplained(mesh(), scene.order, kernels.closed_form, result);
   if (closed.any() && options().closure != ClosureMode::off) {
-    close(scene.order, closed, rows, options().closure, result, progress);
+    close(scene.order, closed, rows, options().closure, result, run.progress);
   }
-  progress.begin("finishing", 1);
+  run.progress.begin("finishing", 1);
   accountForBacks(mesh(), canonicalOrder(mesh()), mesh().area, rows.seen_backs, result);
-  progress.advance();
-  progress.end();
-  progress.check();
+  run.progress.advance();
+  run.progress.end();
+  run.progress.check();
   report.exact.seconds_prepare = seconds_preparing_;
   report.exact.seconds_finish = finishing.seconds();
   return result;
+}
+
+std::shared_ptr<const ExchangeMatrix> Exact::share(const RowRun& run) const {
+  const ExactScene scene(mesh(), run.progress);
+  const ExactKernels kernels(scene, options());
+  std::size_t recheck_every = 1;
+  run.processes->broadcastValue(recheck_every);
+  std::vector<Index> emitting;
+  run.processes->broadcastArray(emitting);
+  RowStore rows(mesh(), scene, options(), emitting, nullptr);
+  fillRows(rows, scene, kernels, recheck_every, run);
+  evenOut(*run.processes, *rows.matrix, {});
+  return rows.matrix;
 }
 
 }  // namespace
@@ -343,23 +319,6 @@ FormFactors Exact::make(KnownRows /*known*/, Progress& progress, RowJournal* jou
 std::unique_ptr<PreparedMethod> prepareExact(const PatchMesh& mesh,
                                              const FormFactorOptions& options) {
   return std::make_unique<Exact>(mesh, options);
-}
-
-std::shared_ptr<const ExchangeMatrix> exactRowsForOthers(const PatchMesh& mesh,
-                                                         const FormFactorOptions& options,
-                                                         Processes& processes, Progress& progress,
-                                                         RowJournal* journal) {
-  const ExactScene scene(mesh, progress);
-  const ExactKernels kernels(scene, options);
-  std::size_t recheck_every = 1;
-  processes.broadcastValue(recheck_every);
-  std::vector<Index> emitting;
-  processes.broadcastArray(emitting);
-  RowStore rows(mesh, scene, options, emitting, nullptr);
-  fillRows(rows.context(scene, kernels, recheck_every, progress), scene.tasks, journal, &processes,
-           progress);
-  evenOut(processes, *rows.matrix, {});
-  return rows.matrix;
 }
 
 }  // namespace radiosity

@@ -8,9 +8,4 @@ namespace radiosity {
 std::unique_ptr<PreparedMethod> prepareExact(const PatchMesh& mesh,
                                              const FormFactorOptions& options);
 
-std::shared_ptr<const ExchangeMatrix> exactRowsForOthers(const PatchMesh& mesh,
-                                                         const FormFactorOptions& options,
-                                                         Processes& processes, Progress& progress,
-                                                         RowJournal* journal);
-
 }  // namespace radiosity
