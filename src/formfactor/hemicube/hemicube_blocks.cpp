@@ -12,10 +12,6 @@
 namespace radiosity {
 namespace {
 
-/// Of the view of a closed row a share this large may show between faces, which meet but for
-/// rounding: some pixels.
-constexpr double kMostLeaks = 1e-3;
-
 bool isSingle(const RowMatrix& matrix) { return matrix.precision() == Precision::single_precision; }
 
 /// Columns as distances from the one before: neighbours take a byte.

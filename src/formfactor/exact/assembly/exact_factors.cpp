@@ -276,7 +276,8 @@ FormFactors Exact::make(KnownRows /*known*/, const RowRun& run) const {
   }
   RowStore rows(mesh(), scene, options(), emitting, run.scratch);
   const RowSums sums = fillRows(rows, scene, kernels, recheck_every, run);
-  const auto check = [&run] { run.progress.check(); };
+  Progress& progress = run.progress;  // the matrix outlives `run`
+  const auto check = [&progress] { progress.check(); };
   if (run.processes != nullptr) evenOut(*run.processes, *rows.matrix, check);
   result.matrix = wholeMatrix(run.processes, rows.matrix, check);
   result.backs = std::move(rows.backs);
@@ -289,13 +290,13 @@ FormFactors Exact::make(KnownRows /*known*/, const RowRun& run) const {
   setAccounts(mesh(), scene.order, tolerance(), closed, result);
   findUnexplained(mesh(), scene.order, kernels.closed_form, result);
   if (closed.any() && options().closure != ClosureMode::off) {
-    close(scene.order, closed, rows, options().closure, result, run.progress);
+    close(scene.order, closed, rows, options().closure, result, progress);
   }
-  run.progress.begin("finishing", 1);
+  progress.begin("finishing", 1);
   accountForBacks(mesh(), canonicalOrder(mesh()), mesh().area, rows.seen_backs, result);
-  run.progress.advance();
-  run.progress.end();
-  run.progress.check();
+  progress.advance();
+  progress.end();
+  progress.check();
   report.exact.seconds_prepare = seconds_preparing_;
   report.exact.seconds_finish = finishing.seconds();
   return result;
