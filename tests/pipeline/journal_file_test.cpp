@@ -12,7 +12,7 @@
 namespace radiosity {
 namespace {
 
-constexpr RowBlock kKind = RowBlock::hemicube_row;
+constexpr RowBlock kKind = RowBlock::row;
 constexpr std::size_t kBlocks = 20;
 
 /// Of many lengths, no two alike.

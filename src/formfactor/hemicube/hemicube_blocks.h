@@ -58,7 +58,7 @@ class HemicubeBlocks final : public RowBlocks {
   void makeByDevice(std::span<const std::size_t> blocks,
                     const std::function<void(std::size_t)>& made) override;
   void finish(std::size_t block) override;
-  RowBlock kind() const override { return RowBlock::hemicube_row; }
+  RowBlock kind() const override { return RowBlock::row; }
   std::uint64_t number(std::size_t block) const override { return patches_[block]; }
   void put(std::size_t block, ByteWriter& bytes) const override;
   bool take(std::size_t block, ByteReader& bytes) override;
