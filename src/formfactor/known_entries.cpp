@@ -7,12 +7,27 @@
 
 namespace radiosity {
 
+namespace {
+
+/// Rounding, and faces that nearly meet, may leave more than the whole view.
+void limitBacks(std::vector<SeenBack>& backs) {
+  double sum = 0;
+  for (const SeenBack& back : backs) sum += back.share;
+  if (sum <= 1) return;
+  for (SeenBack& back : backs) back.share /= sum;
+}
+
+}  // namespace
+
 KnownEntries::KnownEntries(std::vector<KnownRow> rows, std::span<const Index> position)
     : rows_(std::move(rows)) {
   if (rows_.empty()) return;
   row_at_.assign(position.size(), kNone);
   entries_.resize(position.size());
-  for (Index r = 0; r < rows_.size(); ++r) row_at_[position[rows_[r].unknown]] = r;
+  for (Index r = 0; r < rows_.size(); ++r) {
+    row_at_[position[rows_[r].unknown]] = r;
+    limitBacks(rows_[r].backs);
+  }
   for (const KnownRow& row : rows_) {
     const Index own = position[row.unknown];
     for (const auto& [unknown, exchange, error] : row.entries) {

@@ -136,6 +136,7 @@ void PatchIrradiance::lookFrom(std::size_t cluster, const View& view) {
 
 std::vector<double> PatchIrradiance::around(std::span<const double> irradiance) const {
   std::vector<double> out = patchValues(mesh_, irradiance, int(bands_));
+  for (double& value : out) value = std::max(value, 0.0);  // solvers are off by their tolerance
   parallelFor(mesh_.unknowns(), 16, [&](std::size_t cluster) { addSlopes(cluster, out); });
   return out;
 }

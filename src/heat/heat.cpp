@@ -48,9 +48,11 @@ class SharedHeat {
     PatchIrradiance within(mesh_, bands, skyRadiance());
     within.look(patchValues(mesh_, means.radiosity, bands), progress_);
     within.look(ofPatches(means, within).radiosity, progress_);
-    const std::vector<double> more =
-        balanced(factors_, within.beyondMeans(), means.irradiance, bands);
-    const HeatSolution second = solved(factors_, rows_, options_, more, progress_);
+    std::vector<double> more = balanced(factors_, within.beyondMeans(), means.irradiance, bands);
+    HeatSolution second = solved(factors_, rows_, options_, more, progress_);
+    if (raiseToDark(more, second.irradiance)) {
+      second = solved(factors_, rows_, options_, more, progress_);
+    }
     HeatSolution out = ofPatches(second, within);
     out.summary.seconds += means.summary.seconds;
     return out;

@@ -34,4 +34,14 @@ std::vector<double> balanced(const FormFactors& factors, std::span<const double>
   return out;
 }
 
+bool raiseToDark(std::vector<double>& more, std::span<const double> irradiance) {
+  bool raised = false;
+  for (std::size_t k = 0; k < more.size(); ++k) {
+    if (!(irradiance[k] < 0)) continue;
+    more[k] -= irradiance[k];
+    raised = true;
+  }
+  return raised;
+}
+
 }  // namespace radiosity

@@ -20,4 +20,9 @@ bool seesOut(const FormFactors& factors);
 std::vector<double> balanced(const FormFactors& factors, std::span<const double> more,
                              std::span<const double> irradiance, int bands);
 
+/// Raises `more` where the `irradiance` of a solution with it is negative, to 0 there. The second
+/// solution may be darker than the first, by which `more` was limited; a third one, with what is
+/// raised, is nowhere darker than the second. False if nothing was to be raised.
+bool raiseToDark(std::vector<double>& more, std::span<const double> irradiance);
+
 }  // namespace radiosity

@@ -35,9 +35,10 @@ Solution ClusterSolve::run() const {
   PatchIrradiance light(mesh_, materials_.bands, background(materials_.lights, materials_.bands));
   light.look(patchValues(mesh_, means.radiosity, materials_.bands), progress_);
   light.look(radiosityOf(within(light, means.irradiance)), progress_);
-  const std::vector<double> more =
+  std::vector<double> more =
       balanced(factors_, light.beyondMeans(), means.irradiance, materials_.bands);
   Solution solution = between(more);
+  if (raiseToDark(more, solution.irradiance)) solution = between(more);
   accountFor(more, solution.summary.energy);
   judgeBalance(factors_, emission_, solution.summary);
   solution.summary.seconds += means.summary.seconds;

@@ -184,7 +184,7 @@ void HemicubeBlocks::replaceKnown(std::size_t i, PackedRow& row) {
     rows_.seen_backs[i] = known.rowAt(i)->backs;
     // All hemicubes' rows sum to what was seen, so that closed furnaces are uniform.
     const double share = known.share(i, area);
-    for (double& value : row.values) value *= account.fronts / share;
+    if (share > 0) row.scale(account.fronts / share);
   } else {
     if (!seen && entries.empty()) return;
     const PackedRow::Scaled scaled =

@@ -86,6 +86,18 @@ void PackedRow::pack(const HemicubeView& view, std::size_t patches) {
   }
 }
 
+void PackedRow::scale(double factor) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const double value = values[k] * factor;
+    if (!(value > 0)) continue;
+    columns[kept] = columns[k];
+    values[kept++] = value;
+  }
+  columns.resize(kept);
+  values.resize(kept);
+}
+
 PackedRow::Scaled PackedRow::scaleRest(const std::vector<std::uint8_t>& replaced, double beside,
                                        bool closed) {
   double now = 0;
@@ -103,15 +115,10 @@ PackedRow::Scaled PackedRow::scaleRest(const std::vector<std::uint8_t>& replaced
   } else {
     scaled.sky = 1 - now;
   }
-  std::size_t kept = 0;
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    const double value = values[k] * (replaced[k] != 0 ? cap : scaled.rest);
-    if (!(value > 0)) continue;
-    columns[kept] = columns[k];
-    values[kept++] = value;
+    values[k] *= replaced[k] != 0 ? cap : scaled.rest;
   }
-  columns.resize(kept);
-  values.resize(kept);
+  scale(1);
   return scaled;
 }
 

@@ -71,6 +71,8 @@ struct PackedRow {
   std::vector<Index> columns;
   std::vector<double> values;
   void pack(const HemicubeView& view, std::size_t patches);
+  /// Entries that become 0 are dropped.
+  void scale(double factor);
 
   struct Scaled {
     double rest = 1;      ///< factor of the other entries, backs and sky

@@ -244,6 +244,17 @@ void close(const ClosedRows& closed, const UncertainEntries& uncertain, ClosureM
   }
 }
 
+/// Rows that are known cannot give way to the counts of others, where faces nearly meet and views
+/// from both ends differ: what they sum to beyond 1 is their error, if it is more than their figure
+/// explains.
+void stateExcess(FormFactors& result) {
+  const double terms = std::sqrt(double(result.fronts.size()) + 1);
+  for (std::size_t i = 0; i < result.fronts.size(); ++i) {
+    const double excess = result.fronts[i] + result.backs[i] + result.sky[i] - 1;
+    if (excess > terms * result.error[i]) result.error[i] = excess;
+  }
+}
+
 void noteLoosened(const FormFactorOptions& options, FormFactorReport& report) {
   if (!report.rays.loosened_tolerance) return;
   const double tolerance = options.toleranceOf(FormFactorMethod::rays);
@@ -351,6 +362,7 @@ FormFactors Rays::make(KnownRows exact, const RowRun& run) const {
   report.rays.seconds_merge += closing - storing;
   close(closed, uncertain, options().closure, *matrix, beside, result, progress);
   closed.balance(result);
+  stateExcess(result);
   accountForBacks(mesh(), scene.order(), matrix->area(), beside.seen_backs, result);
   report.rays.seconds_close = clockSeconds() - closing;
   result.matrix = matrix;

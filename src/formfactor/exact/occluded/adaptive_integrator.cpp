@@ -204,6 +204,15 @@ void AdaptiveIntegrator<T>::sumCell(const SampleCell& cell, std::size_t side, in
   }
 }
 
+/// Whether shadows may come and go as a step within a whole element: what hides all of the target
+/// from a strip of it fits between all points, those near the corners included. Its quarters are
+/// looked from, too, before any are believed. (Crossing sheets, 101 patches, 1e-3: 13 points missed
+/// 7% of a pair and stated .7%.)
+template <class T>
+bool AdaptiveIntegrator<T>::isStep(const VisibleFraction& sum, std::size_t side, double share) {
+  return side == 3 && share == 1 && sum.may_cross && sum.change > kMostChange;
+}
+
 /// Looks from near a cell's corners, too, for members of which something may have slipped between
 /// its points. 2 x 2: near targets. (Between columns, an element's four points saw all of a near
 /// target, of which its corner saw nothing: 31% of the pair.) 3 x 3: those whose error nears or
@@ -221,6 +230,7 @@ void AdaptiveIntegrator<T>::lookOutside(const SampleCell& cell, std::size_t side
     const VisibleFraction& sum = out[members.index[k]];
     const bool doubtful = side == 2 ? sum.near : sum.may_cross || exceeds(k, kPairDoubtful);
     if (!sums_[k].uncertain || !doubtful) continue;
+    if (exceeds(k, 1) && isStep(sum, side, share)) continue;
     uncertain_.push_back(k);
     chosen_.push_back(&targets_[members.index[k]]);
   }

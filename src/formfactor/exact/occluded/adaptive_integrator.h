@@ -91,6 +91,7 @@ class AdaptiveIntegrator {
                         std::span<VisibleFraction> out);
   void sumCell(const SampleCell& cell, std::size_t side, int level, const Members& members,
                std::span<VisibleFraction> out);
+  static bool isStep(const VisibleFraction& sum, std::size_t side, double share);
   void lookOutside(const SampleCell& cell, std::size_t side, double share, const Members& members,
                    std::span<VisibleFraction> out);
   void cutCell(const SampleCell& cell, const Members& members, int level,

@@ -26,6 +26,15 @@ OccludedExchange betterOfBoth(const OccludedExchange& a, const OccludedExchange&
   return better;
 }
 
+/// Whether the results from both ends differ by more than their errors and what each end's points
+/// missed explain: then one of them is wrong, and has not seen it.
+bool disagree(const OccludedExchange& a, const OccludedExchange& b, double unoccluded) {
+  constexpr double kTimes = 2;  // errors are root mean squares
+  const double explained =
+      kTimes * (a.error + b.error) + (a.unresolved + b.unresolved) * unoccluded;
+  return std::abs(a.exchange - b.exchange) > explained;
+}
+
 }  // namespace
 
 double allowedError(const ElementSet& elements, const OccludedPair& pair, double tolerance) {
@@ -135,38 +144,57 @@ void OccludedKernel::evaluate(const Batch& batch) const {
 }
 
 void OccludedKernel::evaluateAgain(const Batch& batch) const {
-  // Evaluates the wanted pairs from one end, and gives each to take(). Returns their number.
-  const auto again = [&](SampledEnd end, const auto& wanted, const auto& take) {
-    std::vector<std::size_t> which;
-    std::vector<OccludedPair> some;
+  std::vector<std::size_t> doubtful;
+  const auto find = [&] {
+    doubtful.clear();
     for (std::size_t k = 0; k < batch.pairs.size(); ++k) {
-      if (!wanted(batch.out[k])) continue;
-      which.push_back(k);
-      some.push_back(batch.pairs[k]);
+      const OccludedExchange& x = batch.out[k];
+      if (x.unresolved > kPairResolved || x.cut_short) doubtful.push_back(k);
     }
-    std::vector<OccludedExchange> found(some.size());
-    if (!some.empty()) {
-      integrate(kernels_.exact,
-                {batch.tolerance, some, batch.occluder_list, found, batch.counts, batch.progress},
-                end);
-    }
-    for (std::size_t k = 0; k < which.size(); ++k) {
-      OccludedExchange& exchange = batch.out[which[k]];
-      exchange = take(exchange, found[k]);
-    }
-    return which.size();
   };
-  const auto doubtful = [](const OccludedExchange& x) {
-    return x.unresolved > kPairResolved || x.cut_short;
-  };
-  const auto replaced = [](const OccludedExchange&, const OccludedExchange& found) {
-    return found;
-  };
+  find();
   // In double precision the pairs have been evaluated from this end already.
   const bool single = batch.tolerance >= kSinglePrecision;
-  if (single) batch.counts.again += again(SampledEnd::calmer, doubtful, replaced);
-  const std::size_t from_both = again(SampledEnd::restless, doubtful, betterOfBoth);
-  if (!single) batch.counts.again += from_both;
+  if (single) {
+    const auto found = evaluateSome(batch, doubtful, SampledEnd::calmer, batch.tolerance);
+    for (std::size_t m = 0; m < doubtful.size(); ++m) batch.out[doubtful[m]] = found[m];
+  }
+  batch.counts.again += doubtful.size();
+  if (single) find();
+  const auto others = evaluateSome(batch, doubtful, SampledEnd::restless, batch.tolerance);
+  std::vector<std::size_t> apart;
+  for (std::size_t m = 0; m < doubtful.size(); ++m) {
+    OccludedExchange& x = batch.out[doubtful[m]];
+    if (disagree(x, others[m], batch.pairs[doubtful[m]].unoccluded)) apart.push_back(doubtful[m]);
+    x = betterOfBoth(x, others[m]);
+  }
+  settle(batch, apart);
+}
+
+/// Evaluates some pairs of a batch from one end in double precision.
+std::vector<OccludedExchange> OccludedKernel::evaluateSome(const Batch& batch,
+                                                           std::span<const std::size_t> which,
+                                                           SampledEnd end, double tolerance) const {
+  std::vector<OccludedPair> pairs;
+  for (const std::size_t k : which) pairs.push_back(batch.pairs[k]);
+  std::vector<OccludedExchange> found(pairs.size());
+  if (pairs.empty()) return found;
+  integrate(kernels_.exact,
+            {tolerance, pairs, batch.occluder_list, found, batch.counts, batch.progress}, end);
+  return found;
+}
+
+/// Evaluates pairs whose ends disagree more strictly. If they still do, they are off by as much.
+void OccludedKernel::settle(const Batch& batch, std::span<const std::size_t> apart) const {
+  const double strict = std::min(kStricter * batch.tolerance, kStricterLoosest);
+  const auto a = evaluateSome(batch, apart, SampledEnd::calmer, strict);
+  const auto b = evaluateSome(batch, apart, SampledEnd::restless, strict);
+  for (std::size_t m = 0; m < apart.size(); ++m) {
+    OccludedExchange& x = batch.out[apart[m]];
+    x = betterOfBoth(a[m], b[m]);
+    if (!disagree(a[m], b[m], batch.pairs[apart[m]].unoccluded)) continue;
+    x.error = std::max(x.error, std::abs(a[m].exchange - b[m].exchange));
+  }
 }
 
 }  // namespace radiosity

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "formfactor/exact/occluded/pair_sampling.h"
 #include "visibility/clipping/clip_kernels.h"
@@ -57,7 +58,8 @@ double allowedError(const ElementSet& elements, const OccludedPair& pair, double
 /// They do not cancel if the quadrature is all wrong: if a sliver touches a large element, none of
 /// a few points on the latter lies where the exchange takes place. Pairs whose points miss the
 /// unoccluded value by more than kPairResolved, or that need many points in single precision, are
-/// evaluated again: in double precision, then, if that fails, from the other end.
+/// evaluated again: in double precision, then, if that fails, from the other end; then, if the two
+/// disagree, more strictly from both.
 class OccludedKernel {
  public:
   /// `tolerance`: as FormFactorOptions::tolerance. Elements and occluders are kept by reference.
@@ -90,6 +92,9 @@ class OccludedKernel {
   void evaluate(const Batch& batch) const;
   /// See kPairResolved.
   void evaluateAgain(const Batch& batch) const;
+  std::vector<OccludedExchange> evaluateSome(const Batch& batch, std::span<const std::size_t> which,
+                                             SampledEnd end, double tolerance) const;
+  void settle(const Batch& batch, std::span<const std::size_t> apart) const;
   template <class T>
   void integrate(const ClipKernels<T>& kernels, const Batch& batch, SampledEnd end) const;
 
