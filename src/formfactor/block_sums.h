@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/made.h"
 #include "formfactor/row_blocks.h"
 #include "radiosity/base.h"
 
@@ -42,7 +43,11 @@ class BlockSums {
     starts.push_back(leaf_.size());
     return starts;
   }
-  Sum takePart(BlockRange range) { return *take(nodeOf(range)); }
+  /// Made whole by now.
+  Sum takePart(BlockRange range) {
+    std::optional<Sum> sum = take(nodeOf(range));
+    return std::move(made(sum));
+  }
   void putPart(BlockRange range, Sum sum) { put(nodeOf(range), std::move(sum)); }
 
  private:
