@@ -27,11 +27,10 @@ OccludedExchange betterOfBoth(const OccludedExchange& a, const OccludedExchange&
 }
 
 /// Whether the results from both ends differ by more than their errors and what each end's points
-/// missed explain: then one of them is wrong, and has not seen it.
+/// missed explain: then one of them is likely to be wrong, and has not seen it.
 bool disagree(const OccludedExchange& a, const OccludedExchange& b, double unoccluded) {
-  constexpr double kTimes = 2;  // errors are root mean squares
   const double explained =
-      kTimes * (a.error + b.error) + (a.unresolved + b.unresolved) * unoccluded;
+      std::hypot(a.error, b.error) + (a.unresolved + b.unresolved) * unoccluded;
   return std::abs(a.exchange - b.exchange) > explained;
 }
 
