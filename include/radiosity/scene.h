@@ -144,8 +144,8 @@ std::string sceneExtensions();
 
 /// Reads a scene, its format told by the extension, and applies the overrides: .obj (+ .mtl),
 /// .gltf, .glb, .stl, .3mf; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of CalculiX and
-/// Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .x3d, .wrl, .ifc, .ac,
-/// .acc, .lwo, .dxf, .ms3d, .b3d. Named groups (solids, physical groups, element sets, arrays of
+/// Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .ifc, .dxf, as files of
+/// CAD and modellers. Named groups (solids, physical groups, element sets, arrays of
 /// cells) are surfaces. Face f of the scene is face f of the file, but one may become several
 /// (View3D's with subsurfaces, triangles of a strip). Lines and points are left out, and volumes if
 /// there are faces; without faces the skin of the volumes is the scene. An OBJ has no cameras of
