@@ -21,8 +21,12 @@ void keep(const RowBlocks& blocks, std::size_t block, RowJournal* journal) {
   journal->keep(blocks.kind(), blocks.number(block), bytes.bytes());
 }
 
+bool isKept(const RowBlocks& blocks, std::size_t block, const RowJournal* journal) {
+  return journal != nullptr && journal->has(blocks.kind(), blocks.number(block));
+}
+
 bool takeKept(RowBlocks& blocks, std::size_t block, const RowJournal* journal) {
-  if (journal == nullptr || !journal->has(blocks.kind(), blocks.number(block))) return false;
+  if (!isKept(blocks, block, journal)) return false;
   const std::vector<std::byte> kept = journal->kept(blocks.kind(), blocks.number(block));
   ByteReader bytes(kept);
   return blocks.take(block, bytes);
@@ -118,9 +122,8 @@ void makeAllRows(RowBlocks& blocks, const RowRun& run) {
   std::size_t all = 0;
   std::size_t found = 0;
   for (std::size_t b = 0; b < blocks.count(); ++b) {
-    const bool has = run.journal != nullptr && run.journal->has(blocks.kind(), blocks.number(b));
     all += blocks.steps(b);
-    found += has ? blocks.steps(b) : 0;
+    found += isKept(blocks, b, run.journal) ? blocks.steps(b) : 0;
   }
   if (run.journal != nullptr) run.journal->found(found, all);
   run.progress.begin("form factors", all, "rows", found);

@@ -56,7 +56,7 @@ class RowBlocks {
 
   virtual RowBlock kind() const = 0;
   virtual std::uint64_t number(std::size_t block) const = 0;
-  /// Writes all that make() stores; by the thread that has made the block, right after that.
+  /// Writes all that make() stores: right after that, by the same thread, or after hear().
   virtual void put(std::size_t block, ByteWriter& bytes) const = 0;
   /// Stores the same. False, with nothing changed, if the bytes are of another block.
   virtual bool take(std::size_t block, ByteReader& bytes) = 0;
