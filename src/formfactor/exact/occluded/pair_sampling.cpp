@@ -80,7 +80,8 @@ bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
   const double height = glm::dot(plane.normal, elements_.centroid[element]) - plane.offset;
   if (std::abs(height) >= elements_.radius[element]) return false;
   const Heights h = heightsOver(elements_.outline(element), plane);
-  return h.least < -elements_.coincidence && h.most > elements_.coincidence;
+  return h.least < elements_.coincidence && h.most > -elements_.coincidence &&
+         h.most - h.least > elements_.coincidence;
 }
 
 double EdgeDistances::squared(Index element, Index occluder) const {
