@@ -12,6 +12,7 @@
 #include "base/option_list.h"
 #include "base/parallel.h"
 #include "base/processor_clock.h"
+#include "base/steady_mean.h"
 #include "formfactor/row_accounts.h"
 #include "gather/gpu_gatherer.h"
 #include "gather/passes.h"
@@ -382,16 +383,12 @@ std::vector<double> patchRadiosity(const PatchMesh& mesh, const Gathered& gather
   std::vector<double> means(bands * mesh.size(), 0.0);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     if (!(mesh.area[i] > 0)) continue;
-    const std::size_t first = mesh.corner_offset[i];
     for (std::size_t b = 0; b < bands; ++b) {
-      const double base = corners[bands * first + b];
-      double sum = 0;
-      double area = 0;
-      for (std::size_t c = first; c < mesh.corner_offset[i + 1]; ++c) {
-        sum += weights[c] * (corners[bands * c + b] - base);
-        area += weights[c];
+      SteadyMean mean;
+      for (std::size_t c = mesh.corner_offset[i]; c < mesh.corner_offset[i + 1]; ++c) {
+        mean.add(weights[c], corners[bands * c + b]);
       }
-      means[bands * i + b] = base + sum / area;
+      means[bands * i + b] = mean.value();
     }
   }
   return means;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "base/steady_mean.h"
+
 namespace radiosity {
 namespace {
 
@@ -44,7 +46,9 @@ void InterpolatedView::begin(const EyeFrame& frame) {
 }
 
 void InterpolatedView::irradiance(std::span<double> sum) const {
-  for (std::size_t b = 0; b < bands_; ++b) sum[b] = level_[b] + total(above_[b].sum);
+  // Radiosities are not negative. Where those of corner 0 are by far the largest, the sums nearly
+  // cancel, and rounding is left.
+  for (std::size_t b = 0; b < bands_; ++b) sum[b] = std::max(level_[b] + total(above_[b].sum), 0.0);
 }
 
 std::size_t InterpolatedView::bytes() const {
@@ -55,12 +59,9 @@ std::size_t InterpolatedView::bytes() const {
 double InterpolatedView::cornerMean(std::size_t patch, std::size_t band) const {
   const std::size_t first = mesh_.corner_offset[patch];
   const std::size_t end = mesh_.corner_offset[patch + 1];
-  const double base = valueAt(patch, first, band);
-  double mean = base;
-  for (std::size_t c = first; c < end; ++c) {
-    mean += (valueAt(patch, c, band) - base) / double(end - first);
-  }
-  return mean;
+  SteadyMean mean;
+  for (std::size_t c = first; c < end; ++c) mean.add(1, valueAt(patch, c, band));
+  return mean.value();
 }
 
 double InterpolatedView::valueAt(std::size_t patch, std::size_t corner, std::size_t band) const {

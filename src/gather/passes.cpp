@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/steady_mean.h"
+
 namespace radiosity {
 namespace {
 
@@ -73,15 +75,12 @@ void GatherScene::standAtVertices(const PatchMaterials& of_patches, const Gather
   for (std::size_t g = 0; g < groups.size(); ++g) {
     for (const std::size_t corner : groups.cornersOf(g)) area[g] += weights[corner];
   }
-  // We average differences to the first patch, so that a constant keeps its bits.
   const auto meanOf = [&](const std::vector<double>& values, std::size_t g, std::size_t band) {
-    const double first = values[bands * groups.patchesOf(g).front() + band];
-    double sum = 0;
+    SteadyMean mean;
     for (std::size_t k = 0; k < groups.cornersOf(g).size(); ++k) {
-      const double value = values[bands * groups.patchesOf(g)[k] + band];
-      sum += weights[groups.cornersOf(g)[k]] * (value - first);
+      mean.add(weights[groups.cornersOf(g)[k]], values[bands * groups.patchesOf(g)[k] + band]);
     }
-    return float(first + sum / area[g]);
+    return float(mean.value());
   };
   materials.emission.assign(bands * groups.size(), 0.0F);
   materials.reflectance.assign(bands * groups.size(), 0.0F);

@@ -182,11 +182,13 @@ void main() {
       barrier();
     }
     if (lane == 0u) {
-      irradiance[gl_WorkGroupID.x * bands + band] = sums[0];
+      // Sums of differences may end a rounding error below 0.
+      double seen = max(sums[0], 0.0LF);
+      irradiance[gl_WorkGroupID.x * bands + band] = seen;
       uint at = views[gl_WorkGroupID.x].source * bands + band;
       // Emission, reflectance, and what an open sky gives.
       uint all = eyes * bands;
-      double received = sums[0] + weightOf(items) * double(materials[2u * all + band]);
+      double received = seen + weightOf(items) * double(materials[2u * all + band]);
       next[at] = float(double(materials[at]) + double(materials[all + at]) * received);
     }
     barrier();

@@ -1,26 +1,21 @@
 // Computes values at the corners of patches, shared by smooth neighbours, from values of patches.
 #include "base/parallel.h"
+#include "base/steady_mean.h"
 #include "radiosity/render.h"
 
 namespace radiosity {
 namespace {
 
-/// The area-weighted mean over a group's patches, each once. It averages differences to the first,
-/// so that a constant keeps its bits.
+/// The area-weighted mean over a group's patches, each once.
 double groupMean(const PatchMesh& mesh, std::span<const Index> patches,
                  std::span<const double> values, std::size_t bands, std::size_t band) {
-  const auto value = [&](Index patch) { return values[patch * bands + band]; };
-  const double base = value(patches.front());
-  double area = 0;
-  double sum = 0;
+  SteadyMean mean;
   Index last = kNone;
   for (const Index patch : patches) {
-    if (patch == last) continue;
+    if (patch != last) mean.add(mesh.area[patch], values[patch * bands + band]);
     last = patch;
-    area += mesh.area[patch];
-    sum += mesh.area[patch] * (value(patch) - base);
   }
-  return area > 0 ? base + sum / area : base;
+  return mean.value();
 }
 
 }  // namespace
