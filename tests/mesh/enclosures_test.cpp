@@ -214,6 +214,23 @@ TEST(Enclosures, WhatPassesThroughAWallIsNotClosedIn) {
   }
 }
 
+// Its patches meet on an edge in the wall, which is not cut there.
+TEST(Enclosures, APlateThatAWallHalvesIsNotClosedIn) {
+  test::SceneBuilder builder;
+  builder.box(builder.surface("room"), {0, 0, 0}, {2, 1.5, 1}, false);
+  const Index lamp = builder.surface("lamp", 0, 1);
+  builder.face(lamp, {{1.8, .6, .5}, {2, .6, .5}, {2, .8, .5}, {1.8, .8, .5}});
+  builder.face(lamp, {{2, .6, .5}, {2.2, .6, .5}, {2.2, .8, .5}, {2, .8, .5}});
+  for (const Scene& scene : placed(builder.scene())) {
+    for (const bool faces : {false, true}) {
+      const Enclosed found = enclosedIn(scene, faces);
+      EXPECT_EQ(found.no[0], 0u) << "walls";
+      EXPECT_EQ(found.no[1], 1u) << "the half outside";
+      EXPECT_FALSE(found.closed);
+    }
+  }
+}
+
 // Faces as patches meet where one has a corner on the edge of another, or lie on each other.
 TEST(Enclosures, FacesAsPatchesMayHaveTJunctionsButNotLieFaceToFace) {
   test::SceneBuilder builder;

@@ -86,14 +86,16 @@ class SpaceSearch {
         progress_(progress),
         contacts_(mesh.vertices, all_, first, coincidence),
         shells_(2 * all_.size()),
+        shell_(2 * all_.size()),
         sheets_(2 * all_.size()),
         enclosed_(2 * all_.size(), 0) {}
 
   std::vector<std::uint8_t> run() {
     std::vector<std::uint8_t> patches(mesh_.size(), 0);
-    join();
+    joinShells();
     progress_.check();
     if (!findOutlines()) return patches;
+    joinSheets();
     progress_.check();
     lookFromSheets();
     progress_.check();
@@ -161,18 +163,65 @@ class SpaceSearch {
     return {edgeKey(from, to), user.reversed != (from > to), user.polygon};
   }
 
-  void join() {
+  void joinShells() {
     std::vector<PolygonAtEdge> around;
-    forEdges(withoutTJunctions(edgeUsers(all_, first_)), [&](std::span<const EdgeUser> users) {
-      polygonsAt(users, around);
-      for (std::size_t k = 0; k < around.size(); ++k) {
-        const Index up = around[k].up;
-        const Index down = around[(k + 1) % around.size()].down;
-        shells_.unite(up, down);
-        // Nothing depends on angles here.
-        if (around.size() <= 2) sheets_.unite(up, down);
-      }
+    users_ = withoutTJunctions(edgeUsers(all_, first_));
+    forEdges(users_, [&](std::span<const EdgeUser> users) { joinAt(users, shells_, around); });
+    for (Index side = 0; side < shell_.size(); ++side) shell_[side] = shells_.find(side);
+  }
+
+  void joinAt(std::span<const EdgeUser> users, UnionFind& sets,
+              std::vector<PolygonAtEdge>& around) const {
+    polygonsAt(users, around);
+    for (std::size_t k = 0; k < around.size(); ++k) {
+      sets.unite(around[k].up, around[(k + 1) % around.size()].down);
+    }
+  }
+
+  using Edge = std::span<const EdgeUser>;
+
+  /// Joins sides around edges of no more than two polygons: nothing depends on angles there. If
+  /// such an edge lies in an outline, what meets at it may go on from one side to the other.
+  void joinSheets() {
+    std::vector<Edge> edges;
+    forEdges(users_, [&](Edge users) {
+      if (users.size() <= 2) edges.push_back(users);
     });
+    const std::vector<std::uint8_t> in_outline = edgesInOutlines(edges);
+    progress_.check();
+    std::vector<PolygonAtEdge> around;
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      if (in_outline[k] == 0) joinAt(edges[k], sheets_, around);
+    }
+  }
+
+  /// For each edge 1 if it lies in a polygon of an outline that is not one of its own.
+  std::vector<std::uint8_t> edgesInOutlines(std::span<const Edge> edges) const {
+    std::vector<Index> outlines;
+    std::vector<Box3> boxes;
+    for (Index p = 0; p < all_.size(); ++p) {
+      if (weight(p) == 0) continue;
+      outlines.push_back(p);
+      boxes.push_back(contacts_.box(p));
+    }
+    const BoxTree tree(boxes);
+    std::vector<std::uint8_t> found(edges.size(), 0);
+    parallelFor(edges.size(), kPatchesAtOnce, [&](std::size_t k) {
+      if (progress_.cancelled()) return;
+      const Vec3& low = at(edges[k][0].low());
+      const Vec3& high = at(edges[k][0].high());
+      Box3 box;
+      box.add(low);
+      box.add(high);
+      tree.query(box, [&](Index o) {
+        const Index p = outlines[o];
+        const bool own =
+            std::ranges::any_of(edges[k], [&](auto& user) { return user.polygon == p; });
+        if (!own && contacts_.holds(p, low, high)) found[k] = 1;
+        return found[k] == 0;
+      });
+    });
+    return found;
   }
 
   /// The polygons at an edge, by angle. If some lie back to back, their backs face each other.
@@ -219,7 +268,7 @@ class SpaceSearch {
       const Vec3 normal = glm::cross(b - a, c - a) / 2.0;
       const double part = glm::dot(a - base, normal) / 3;
       for (const bool back : {false, true}) {
-        const Index shell = shells_.find(sideOf(p, back));
+        const Index shell = shell_[sideOf(p, back)];
         volume[shell] += back ? -part : part;
         area[shell] += glm::length(normal);
       }
@@ -227,7 +276,7 @@ class SpaceSearch {
     is_outline_.assign(count, 0);
     bool any = false;
     for (Index s = 0; s < count; ++s) {
-      if (shells_.find(s) != s || !(volume[s] < -0.5 * area[s] * coincidence_)) continue;
+      if (shell_[s] != s || !(volume[s] < -0.5 * area[s] * coincidence_)) continue;
       is_outline_[s] = 1;
       any = true;
     }
@@ -246,9 +295,11 @@ class SpaceSearch {
     }
   }
 
-  bool onOutline(Index side) { return is_outline_[shells_.find(side)] != 0; }
+  bool onOutline(Index side) const { return is_outline_[shell_[side]] != 0; }
   /// 1 if just the front of the polygon is on the cycle of outlines, -1 if just the back is.
-  int weight(Index p) { return int(onOutline(sideOf(p, false))) - int(onOutline(sideOf(p, true))); }
+  int weight(Index p) const {
+    return int(onOutline(sideOf(p, false))) - int(onOutline(sideOf(p, true)));
+  }
 
   /// A point of a sheet: the middle of a patch.
   struct Eye {
@@ -331,8 +382,6 @@ class SpaceSearch {
       boxes.push_back(contacts_.box(p));
     }
     tree_ = BoxTree(boxes);
-    shell_.resize(enclosed_.size());
-    for (Index side = 0; side < enclosed_.size(); ++side) shell_[side] = shells_.find(side);
   }
 
   Index enclosedSide(Index wall) const { return sideOf(wall, enclosed_[sideOf(wall, false)] == 0); }
@@ -349,8 +398,8 @@ class SpaceSearch {
         if (enclosed_[side] == 0) continue;
         tree_.query(contacts_.box(p), [&](Index w) {
           const Index wall = walls_[w];
-          const bool may = wall != p && (is_outline_[shell_[side]] == 0 ||
-                                         shell_[enclosedSide(wall)] == shell_[side]);
+          const bool may =
+              wall != p && (!onOutline(side) || shell_[enclosedSide(wall)] == shell_[side]);
           if (may && contacts_.passes(p, wall)) passes[k][back ? 1 : 0] = 1;
           return passes[k][back ? 1 : 0] == 0;
         });
@@ -372,7 +421,7 @@ class SpaceSearch {
     const bool back = mesh_.side[i] != 0;
     const Index p = fronts_.at[back ? mesh_.twin[i] : i];
     const Index side = sideOf(p, back);
-    if (enclosed_[side] == 0 || is_outline_[shell_[side]] != 0) return enclosed_[side] != 0;
+    if (enclosed_[side] == 0 || onOutline(side)) return enclosed_[side] != 0;
     const Vec3& centre = mesh_.centroid[i];
     bool covered = false;
     tree_.query(Box3{centre, centre}, [&](Index w) {
@@ -394,14 +443,14 @@ class SpaceSearch {
   double coincidence_;
   Progress& progress_;
   PolygonContacts contacts_;
+  std::vector<EdgeUser> users_;  ///< of all edges
   UnionFind shells_;
-  /// Parts of shells that are joined by edges of no more than two polygons.
-  UnionFind sheets_;
+  std::vector<Index> shell_;              ///< by side
+  UnionFind sheets_;                      ///< parts of shells; see joinSheets()
   std::vector<std::uint8_t> is_outline_;  ///< by shell, of a bounded space
   std::vector<std::uint8_t> enclosed_;    ///< by side
   std::vector<Index> walls_;
-  BoxTree tree_;              ///< of walls
-  std::vector<Index> shell_;  ///< by side
+  BoxTree tree_;  ///< of walls
 };
 
 }  // namespace

@@ -165,6 +165,34 @@ bool PolygonContacts::passes(Index p, Index q) const {
   return false;
 }
 
+bool PolygonContacts::holds(Index q, const Vec3& from, const Vec3& to) const {
+  const double near = coincidence_ + bend(q);
+  if (sideOf(q, from, near) != 0 || sideOf(q, to, near) != 0) return false;
+  const double length = glm::distance(from, to);
+  if (length <= coincidence_) return false;
+  const Vec3 along = (to - from) / length;
+  const Vec3 across = glm::cross(all_.normal[q], along);
+  std::vector<double> ends{0, length};
+  for (std::size_t l = all_.loopBegin(q); l < all_.loopEnd(q); ++l) {
+    const std::span<const Index> corners = loop(l);
+    for (std::size_t k = 0, last = corners.size() - 1; k < corners.size(); last = k++) {
+      const Vec3 a = vertices_[corners[last]] - from;
+      const Vec3 b = vertices_[corners[k]] - from;
+      const double at_a = glm::dot(a, across);
+      const double at_b = glm::dot(b, across);
+      if ((at_a < 0) == (at_b < 0)) continue;
+      const double place = glm::dot(a + (b - a) * (at_a / (at_a - at_b)), along);
+      if (place > 0 && place < length) ends.push_back(place);
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  for (std::size_t k = 1; k < ends.size(); ++k) {
+    if (ends[k] - ends[k - 1] <= coincidence_) continue;
+    if (contains(q, from + along * (0.5 * (ends[k] + ends[k - 1])))) return true;
+  }
+  return false;
+}
+
 bool PolygonContacts::inPlane(Index p, Index q) const {
   const std::span<const Index> own = corners(p);
   return std::all_of(own.begin(), own.end(),

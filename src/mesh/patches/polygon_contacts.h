@@ -25,6 +25,8 @@ class PolygonContacts {
   /// Whether p goes on beyond q: it has parts on both sides of the plane of q, next to a segment
   /// that is in q or on its rim. A common edge alone does not make it so.
   bool passes(Index p, Index q) const;
+  /// Whether a segment lies in q, or along its rim, for more than the coincidence.
+  bool holds(Index q, const Vec3& from, const Vec3& to) const;
   /// Whether all of p is in the plane of q.
   bool inPlane(Index p, Index q) const;
 
