@@ -143,6 +143,42 @@ TEST(BatchVisibility, SinglePrecisionEqualsPointByPointClipping) {
   expectAsExact<float>(clipKernels(true).single, 10 * 14 * 2e-6);
 }
 
+/// A triangle overhead whose edge lies in the side x = 0 of a box, with a corner in its middle: by
+/// `back` before the side, the ends behind it.
+template <class T>
+void expectSeenBesideABox(const ClipKernels<T>& kernels, double back, double tolerance) {
+  const Occluder box = test::boxOccluder({-0.5, -1, 1}, {0.5, 0, 0}, {0, 2, 0}, {0, 0, 2});
+  const std::vector<Vec3> outline = {
+      {-back, -0.1, 2}, {back, 0.01, 2}, {-back, 0.1, 2}, {0.2, 0, 2}};
+  const Blocker past{&box, 0, true};
+  GroupTarget target;
+  target.setOutline(outline, makeFrame({0.1, 0, 2}, -kReceiverNormal, axisAcross(kReceiverNormal)));
+  target.blockers = std::span(&past, 1);
+  const GroupTarget* const targets[] = {&target};
+  BatchVisibility<T> view(kernels);
+  const SamplePoints points = cell().points(3);
+  view.look(points.all(), cell().middle(), kReceiverNormal, targets, false);
+  std::size_t beside = 0;
+  for (std::size_t q = 0; q < points.count; ++q) {
+    if (points.point[q].position.x <= 0) continue;  // in line with the side, or the box hides
+    ++beside;
+    const double whole = double(view.whole(q)[0]);
+    EXPECT_NEAR(double(view.visible(q)[0]), whole, tolerance * whole) << q;
+  }
+  EXPECT_EQ(beside, 3u);
+}
+
+// Rounding far from the origin, and elements that are convex but for coincidence, leave corners
+// behind the line of their neighbours.
+TEST(BatchVisibility, ACornerMayLieBackFromTheLineOfItsNeighbours) {
+  for (const double back : {0.0, 1e-15, 1e-13, 1e-11, 1e-9}) {
+    expectSeenBesideABox<double>(clipKernels(true).exact, back, 10 * 14 * 1e-14 + 100 * back);
+  }
+  for (const double back : {1e-9, 1e-7, 1e-6, 3e-6}) {
+    expectSeenBesideABox<float>(clipKernels(true).single, back, 10 * 14 * 2e-6 + 100 * back);
+  }
+}
+
 TEST(BatchVisibility, OtherTargetsOfTheBatchChangeNothing) {
   BatchVisibility<float> together(clipKernels(true).single);
   BatchVisibility<float> alone(clipKernels(true).single);

@@ -62,16 +62,16 @@ HWY_INLINE WordVector<T> cutToCone(VectorClip<T>& clip, IndexVector<T> first_pla
   if (own.count <= own.kMost) {
     clip.startEdges();
     for (std::size_t r = 0; r < own.count; ++r) {
-      clip.edges.cut(own.line[r], clip.noise, concerned);
+      clip.edge_along[r] = clip.edges.cut(own.line[r], clip.noise, concerned);
     }
     for (std::size_t r = 0; r < own.count; ++r) {
-      word = clip.addEdge(word, corners + r, own.label[r], concerned);
+      word = clip.addEdge(word, clip.edge_along[r], own.label[r], concerned);
     }
   } else {
     clip.cutByPlanes(concerned);
-    for (std::size_t p = 0, edge = corners; p < clip.line_count; ++p) {
+    for (std::size_t p = 0; p < clip.line_count; ++p) {
       const auto here = hn::And(concerned, clip.cutBy(p));
-      if (!hn::AllFalse(d, here)) word = clip.addEdge(word, edge++, label(p), here);
+      if (!hn::AllFalse(d, here)) word = clip.addEdge(word, clip.edge_along[p], label(p), here);
     }
   }
   for (std::size_t k = 0; k < corners; ++k) {

@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -33,11 +34,14 @@ struct Line {
 /// bit.
 template <class T>
 struct EdgeList {
-  static constexpr std::size_t kMost = kMostCorners + kMostPlanes;
+  /// Gaps that may be closed besides those of convex polygons; see closeGaps().
+  static constexpr std::size_t kMostGaps = kMostPlanes;
+  static constexpr std::size_t kMost = kMostCorners + kMostPlanes + kMostGaps;
 
   alignas(64) T from[kMost][2][kLaneAlignment];
   alignas(64) T to[kMost][2][kLaneAlignment];
   std::size_t count = 0;
+  std::size_t gaps = 0;  ///< closed so far
 
   HWY_INLINE Vector2<T> start(std::size_t k) const {
     const Tag<T> d;
@@ -55,16 +59,18 @@ struct EdgeList {
     hn::Store(b.v, d, to[k][1]);
   }
 
-  /// Cuts every edge to the inner side of a line and adds the edge along it. `concerned`: lanes
-  /// that are cut; the others stay. Points count as inside up to `noise` outside, so that an edge
-  /// along the line lies on one side with all its points.
-  HWY_INLINE void cut(const Line<T>& line, Vector<T> noise, Mask<T> concerned) {
+  /// Cuts every edge to the inner side of a line, adds the edge along it and returns its number.
+  /// `concerned`: lanes that are cut; the others stay. Points count as inside up to `noise`
+  /// outside, so that an edge along the line lies on one side with all its points.
+  HWY_INLINE std::size_t cut(const Line<T>& line, Vector<T> noise, Mask<T> concerned) {
     const Tag<T> d;
     const auto zero = hn::Zero(d);
     const auto one = hn::Set(d, T(1));
     const auto least = hn::Sub(zero, noise);
     Vector2<T> leaves = {zero, zero};
     Vector2<T> enters = leaves;
+    auto left = hn::Gt(zero, zero);
+    auto left_again = left;
     for (std::size_t k = 0; k < count; ++k) {
       const Vector2<T> a = start(k);
       const Vector2<T> b = end(k);
@@ -77,14 +83,74 @@ struct EdgeList {
                                    hn::Add(a.v, hn::Mul(t, hn::Sub(b.v, a.v)))};
       const auto leaving = hn::AndNot(a_out, b_out);
       const auto entering = hn::AndNot(b_out, a_out);
+      left_again = hn::Or(left_again, hn::And(left, leaving));
+      left = hn::Or(left, leaving);
       leaves = choose2<T>(leaving, crossing, leaves);
       enters = choose2<T>(entering, crossing, enters);
       // Wholly outside: both ends become `b`, an edge of no length.
       set(k, choose2<T>(a_out, choose2<T>(entering, crossing, b), a),
           choose2<T>(leaving, crossing, b));
     }
-    set(count, leaves, enters);
-    ++count;
+    const std::size_t along = count++;
+    set(along, leaves, enters);
+    if (!hn::AllFalse(d, left_again)) closeGaps(left_again);
+    return along;
+  }
+
+  /// Adds edges from ends at which no edge starts to starts at which none ends. An outline is
+  /// convex but for coincidence: a corner that lies back from its neighbours' line, if that is the
+  /// line of a cut, leaves and enters the inner side as others do. All gaps are on one line, so
+  /// that it does not matter which end is joined to which start.
+  HWY_NOINLINE void closeGaps(Mask<T> open) {
+    const Tag<T> d;
+    alignas(64) T is_open[kLaneAlignment];
+    hn::Store(hn::IfThenElseZero(open, hn::Set(d, T(1))), d, is_open);
+    const std::size_t first = count;
+    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      if (is_open[lane] == 0) continue;
+      std::array<LanePoint, kMost> ends;
+      std::array<LanePoint, kMost> starts;
+      const std::size_t missing = unmatched(lane, first, ends.data(), starts.data());
+      for (std::size_t k = 0; k < missing; ++k) {
+        if (first + k == count) {
+          if (gaps == kMostGaps) return;
+          ++gaps;
+          set(count++, {hn::Zero(d), hn::Zero(d)}, {hn::Zero(d), hn::Zero(d)});
+        }
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+          from[first + k][axis][lane] = ends[k][axis];
+          to[first + k][axis][lane] = starts[k][axis];
+        }
+      }
+    }
+  }
+
+ private:
+  using LanePoint = std::array<T, 2>;
+
+  /// Finds the ends of a lane's first edges at which none of them starts, and as many starts at
+  /// which none ends. Returns their number.
+  std::size_t unmatched(std::size_t lane, std::size_t edge_count, LanePoint* ends,
+                        LanePoint* starts) const {
+    std::size_t end_count = 0;
+    std::size_t start_count = 0;
+    // Takes a point off one list, or puts it on the other.
+    const auto match = [](const LanePoint& p, LanePoint* off, std::size_t& off_count, LanePoint* on,
+                          std::size_t& on_count) {
+      for (std::size_t k = 0; k < off_count; ++k) {
+        if (off[k] != p) continue;
+        off[k] = off[--off_count];
+        return;
+      }
+      on[on_count++] = p;
+    };
+    for (std::size_t k = 0; k < edge_count; ++k) {
+      const LanePoint a = {from[k][0][lane], from[k][1][lane]};
+      const LanePoint b = {to[k][0][lane], to[k][1][lane]};
+      match(a, ends, end_count, starts, start_count);
+      match(b, starts, start_count, ends, end_count);
+    }
+    return std::min(end_count, start_count);
   }
 };
 
@@ -141,6 +207,8 @@ struct VectorClip {
   Mask<T> nothing;  ///< lanes of which nothing is inside all planes
   Mask<T> cut;      ///< lanes that some plane cuts
   std::size_t line_count;
+  std::array<std::size_t, kMostPlanes>
+      edge_along;  ///< by plane or line: its edge, if it cuts a lane
   /// Each plane's line, and how far each polygon reaches out of it.
   alignas(64) T lines[kMostPlanes][4][kLaneAlignment];
   EdgeList<T> edges;
@@ -199,6 +267,7 @@ struct VectorClip {
       edges.set(k, corner[k > 0 ? k - 1 : targets.corners - 1], corner[k]);
     }
     edges.count = targets.corners;
+    edges.gaps = 0;
   }
 
   /// Cuts the polygons of `concerned` lanes, plane after plane.
@@ -206,7 +275,7 @@ struct VectorClip {
     startEdges();
     for (std::size_t p = 0; p < line_count; ++p) {
       const auto here = hn::And(concerned, cutBy(p));
-      if (!hn::AllFalse(Tag<T>(), here)) edges.cut(line(p), noise, here);
+      if (!hn::AllFalse(Tag<T>(), here)) edge_along[p] = edges.cut(line(p), noise, here);
     }
   }
 
