@@ -149,6 +149,23 @@ BothEnds PairPreparation::addBlockers(const OccludedPair& given,
   return nearest;
 }
 
+/// Squares of how shadows change over both ends of a pair, past its blockers from a number on. A
+/// body seen edge-on counts before the calmer end is chosen: along that end the view dips, maybe
+/// between all points, and from the other end the body is broad. (A sliver past two fins, 1e-3: all
+/// points missed a dip that was 7% of the pair, with 0.1% stated.)
+BothEnds PairPreparation::changes(const OccludedPair& given, std::uint32_t blockers_begin) const {
+  BothEnds change2 = change_.squared();
+  const auto own = std::span<const Blocker>(blockers).subspan(blockers_begin);
+  if (own.size() > kPairFewBlockers) return change2;
+  const auto worth = [&](Index element) {
+    const auto edge_on = [&](const Blocker& b) { return distances_.seesEdgeOn(element, b.id); };
+    return std::ranges::any_of(own, edge_on) ? kPairEdgeOn * kPairEdgeOn : 1;
+  };
+  change2.row *= worth(given.row);
+  change2.column *= worth(given.column);
+  return change2;
+}
+
 void PairPreparation::addPair(std::uint32_t number, const OccludedPair& given,
                               std::span<const Index> occluder_list, SampledEnd end) {
   const Index row_facet = elements_.facet[given.row];
@@ -164,17 +181,12 @@ void PairPreparation::addPair(std::uint32_t number, const OccludedPair& given,
   pair.blockers_end = std::uint32_t(blockers.size());
   const double row_size = elements_.radius[given.row];
   const double column_size = elements_.radius[given.column];
-  const BothEnds change2 = change_.squared();
+  const BothEnds change2 = changes(given, pair.blockers_begin);
   const bool row_is_calmer = change2.row <= kAlike * change2.column;
   const bool at_row_end = row_is_calmer == (end == SampledEnd::calmer);
   pair.change = float(std::sqrt(at_row_end ? change2.row : change2.column));
   const double reach = at_row_end ? row_size : column_size;
   const Index sampled = at_row_end ? given.row : given.column;
-  const bool few = pair.blockers_end - pair.blockers_begin <= kPairFewBlockers;
-  const bool edge_on =
-      few && std::any_of(blockers.begin() + pair.blockers_begin, blockers.end(),
-                         [&](const Blocker& b) { return distances_.seesEdgeOn(sampled, b.id); });
-  if (edge_on) pair.change *= kPairEdgeOn;
   pair.may_cross = (at_row_end ? nearest.row : nearest.column) <= reach * reach;
   pair.sampled = sampled;
   pair.target = at_row_end ? given.column : given.row;

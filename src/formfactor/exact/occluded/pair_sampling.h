@@ -90,6 +90,7 @@ class PairPreparation {
     std::uint32_t pair;
   };
   BothEnds addBlockers(const OccludedPair& given, std::span<const Index> occluder_list);
+  BothEnds changes(const OccludedPair& given, std::uint32_t blockers_begin) const;
   void addPair(std::uint32_t number, const OccludedPair& given,
                std::span<const Index> occluder_list, SampledEnd end);
   void sortPairs();
