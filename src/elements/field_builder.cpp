@@ -209,13 +209,11 @@ class FieldBuilder {
       node.forced = edge > rule_.longest_edge || (partial && edge > rule_.partial_edge);
       double smallest = isShown(node.root) ? rule_.smallest_edge : rule_.source_edge;
       if (isDear(node)) smallest = std::max(smallest, rule_.edge_by_rays);
-      const double spread =
-          rule_.least_spread * (surface_.curved[node.root] != 0 ? rule_.curved_spread : 1);
       const double found = spreadOf(node);
       const bool steep = found > rule_.steep_spread && isShown(node.root) &&
                          edge > rule_.steep_fraction * smallest;
-      node.tested =
-          !isDark(node) && ((edge > smallest && (node.forced || found >= spread)) || steep);
+      node.tested = !isDark(node) &&
+                    ((edge > smallest && (node.forced || found >= rule_.least_spread)) || steep);
       if (node.tested && points_.size() + 5 > most_points_) {
         node.tested = false;
         ++out_.unrefined;

@@ -76,9 +76,6 @@ struct RefinementRule {
   /// N * bands: light of the patches, for points behind a surface.
   std::span<const double> patch_light;
   std::size_t most_vertices = 0;  ///< besides the corners of roots
-  /// Facets of curved bodies are small already; they are tested only if their corners differ by
-  /// this many times `least_spread`.
-  double curved_spread = 1;
   /// R; empty: all are shown. Sources are cut only down to `source_edge` (metres) and do not change
   /// the edges that they share with roots that are shown.
   std::span<const RootUse> use;

@@ -27,13 +27,53 @@ double total(std::span<const double> values) {
 
 }  // namespace
 
-void ReflectedLight::addSource(const RayEnd& end, std::span<double> sum) const {
-  if (end.patch == RayEnd::kSky) {
+std::uint64_t KeptEnds::keyOf(const SurfacePoint& point) {
+  Hash hash;
+  hash.bytes(&point.position, sizeof point.position);
+  hash.bytes(&point.normal, sizeof point.normal);
+  hash.bytes(&point.owners, sizeof point.owners);
+  return hash.value();
+}
+
+std::uint32_t ReflectedLight::sourceAt(const RayEnd& end) const {
+  switch (end.patch) {
+    case RayEnd::kSky:
+      return KeptEnds::kSky;
+    case RayEnd::kBlack:
+      return KeptEnds::kBlack;
+    case RayEnd::kOwn:
+      return KeptEnds::kOwn;
+    default:
+      return sources_.cellAt(end.patch, end.at).value_or(KeptEnds::kDark);
+  }
+}
+
+/// Of the set `number`, turned by `turn`. The result holds until the thread's next call.
+const std::vector<std::uint32_t>& ReflectedLight::endsOf(const SurfacePoint& point,
+                                                         const HemisphereSet& set,
+                                                         std::size_t number, double turn) const {
+  const bool may_keep = kept_ != nullptr && &set == &set_;
+  if (may_keep) {
+    if (const std::vector<std::uint32_t>* kept = kept_->find(point)) return *kept;
+  }
+  thread_local std::vector<RayEnd> ends;
+  thread_local std::vector<std::uint32_t> sources;
+  ends.resize(set.rays());
+  rays_.look({point.position, point.normal, surface_.owners[point.owners]}, set, number, turn,
+             ends);
+  sources.clear();
+  for (const RayEnd& end : ends) sources.push_back(sourceAt(end));
+  if (may_keep) kept_->keep(point, sources);
+  return sources;
+}
+
+void ReflectedLight::addSource(std::uint32_t source, std::span<double> sum) const {
+  if (source == KeptEnds::kSky) {
     for (std::size_t b = 0; b < background_.size(); ++b) {
       sum[b] += std::numbers::pi * background_[b];
     }
-  } else if (end.patch != RayEnd::kBlack) {
-    sources_.add(end.patch, end.at, sum);
+  } else if (source < KeptEnds::kDark) {
+    sources_.add(source, sum);
   }
 }
 
@@ -52,15 +92,12 @@ double ReflectedLight::irradiance(const SurfacePoint& point, const ElementLights
 /// `spread`: the standard error of as many random rays over their mean.
 double ReflectedLight::look(const SurfacePoint& point, const HemisphereSet& set,
                             std::span<double> out, double& spread) const {
-  thread_local std::vector<RayEnd> ends;
   thread_local std::vector<double> first;
-  ends.resize(set.rays());
   first.assign(out.size(), 0.0);
   const std::uint64_t bits = placeSeed(point.place + point.normal, seed_);
   const std::size_t number = bits % HemisphereSet::kSets;
   const double turn = 2 * std::numbers::pi * double(bits >> 11) * 0x1p-53;
-  rays_.look({point.position, point.normal, surface_.owners[point.owners]}, set, number, turn,
-             ends);
+  const std::vector<std::uint32_t>& ends = endsOf(point, set, number, turn);
   // Where facets meet smoothly, rays past the mean normal's horizon end within the body.
   const bool between_facets = surface_.owners[point.owners].size() > 1;
   std::size_t counted = 0;
@@ -68,8 +105,8 @@ double ReflectedLight::look(const SurfacePoint& point, const HemisphereSet& set,
   std::size_t behind = 0;
   double squares = 0;
   for (std::size_t k = 0; k < ends.size(); ++k) {
-    if (ends[k].patch == RayEnd::kOwn) continue;
-    if (ends[k].patch == RayEnd::kBlack) {
+    if (ends[k] == KeptEnds::kOwn) continue;
+    if (ends[k] == KeptEnds::kBlack) {
       ++behind;
       if (between_facets) continue;
     }

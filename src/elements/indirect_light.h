@@ -1,6 +1,8 @@
 // Light from surfaces and from where nothing stands at points, by rays.
 #pragma once
 
+#include <tbb/concurrent_unordered_map.h>
+
 #include <atomic>
 #include <cstddef>
 #include <span>
@@ -12,6 +14,31 @@
 #include "radiosity/elements.h"
 
 namespace radiosity {
+
+/// Where the rays of points end, kept for further passes over the same points and rays: 4 bytes a
+/// ray, and some dozens a point.
+class KeptEnds {
+ public:
+  /// A cell of the sources, or one of these.
+  static constexpr std::uint32_t kSky = kNone - 1;
+  static constexpr std::uint32_t kBlack = kNone - 2;  ///< a back without patches
+  static constexpr std::uint32_t kOwn = kNone - 3;    ///< the surface that it left: no true hit
+  static constexpr std::uint32_t kDark = kNone - 4;   ///< a patch without light
+
+  /// Null if they are not kept. Thread-safe, as keep().
+  const std::vector<std::uint32_t>* find(const SurfacePoint& point) const {
+    const auto found = ends_.find(keyOf(point));
+    return found == ends_.end() ? nullptr : &found->second;
+  }
+  void keep(const SurfacePoint& point, const std::vector<std::uint32_t>& ends) {
+    ends_.emplace(keyOf(point), ends);
+  }
+
+ private:
+  static std::uint64_t keyOf(const SurfacePoint& point);
+
+  tbb::concurrent_unordered_map<std::uint64_t, std::vector<std::uint32_t>> ends_;
+};
 
 /// The mean, over cosine-distributed rays, of the radiosity of the surfaces where they end. Rays
 /// that end on their own surface do not count, nor, where facets meet smoothly, those that end on
@@ -36,6 +63,10 @@ class ReflectedLight : public FieldLight {
     apart_ = apart;
   }
 
+  /// Takes ends from `kept`, kept by reference, and puts there those that it traces. All that use
+  /// it have the same surface and the same set.
+  void keepEnds(KeptEnds& kept) { kept_ = &kept; }
+
   std::shared_ptr<const ElementLights> lightsOf(const ElementShape& /*shape*/,
                                                 const ElementLights* /*parent*/) const override {
     return nullptr;
@@ -47,7 +78,10 @@ class ReflectedLight : public FieldLight {
   std::size_t repeated() const { return repeated_; }
 
  private:
-  void addSource(const RayEnd& end, std::span<double> sum) const;
+  const std::vector<std::uint32_t>& endsOf(const SurfacePoint& point, const HemisphereSet& set,
+                                           std::size_t number, double turn) const;
+  std::uint32_t sourceAt(const RayEnd& end) const;
+  void addSource(std::uint32_t source, std::span<double> sum) const;
   double look(const SurfacePoint& point, const HemisphereSet& set, std::span<double> out,
               double& spread) const;
 
@@ -55,6 +89,7 @@ class ReflectedLight : public FieldLight {
   const PointRays& rays_;
   const HemisphereSet& set_;
   const HemisphereSet* more_ = nullptr;
+  KeptEnds* kept_ = nullptr;
   double uneven_ = 0;
   double apart_ = 0;
   const SourceMap& sources_;

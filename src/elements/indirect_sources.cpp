@@ -73,13 +73,26 @@ void IndirectSources::take(ElementField field) {
   field_ = std::move(field);
   before_ = std::move(light_);
   light_ = patchMeans(mesh_, surface_.roots, lookup_, field_, bands_);
-  for (std::size_t k = 0; k < light_.size(); ++k) {
-    if (!isEvaluated(k / bands_)) light_[k] = solved_[k];
-  }
+  raiseOthers();
   std::vector<double> moved(light_.size());
   for (std::size_t k = 0; k < light_.size(); ++k) moved[k] = std::abs(light_[k] - before_[k]);
-  moved_before_ = moved_;
   moved_ = reflectedPower(moved);
+  gained_before_ = gained_;
+  gained_ = reflectedPower(light_) - reflectedPower(before_);
+}
+
+/// Gives patches that are not evaluated the light of the solution, times what the others have over
+/// theirs.
+void IndirectSources::raiseOthers() {
+  std::vector<double> evaluated(solved_.begin(), solved_.end());
+  for (std::size_t k = 0; k < light_.size(); ++k) {
+    if (!isEvaluated(k / bands_)) evaluated[k] = 0;
+  }
+  const double before = reflectedPower(evaluated);
+  const double ratio = before > 0 ? reflectedPower(light_) / before : 1;
+  for (std::size_t k = 0; k < light_.size(); ++k) {
+    if (!isEvaluated(k / bands_)) light_[k] = ratio * solved_[k];
+  }
 }
 
 double IndirectSources::reflectedPower(std::span<const double> irradiance) const {
@@ -95,8 +108,8 @@ void IndirectSources::keepMeans() {
 }
 
 void IndirectSources::extrapolate() {
-  if (!(moved_ < kMostLeft * moved_before_)) return;
-  const double left = moved_ / moved_before_;
+  const double left = gained_before_ != 0 ? gained_ / gained_before_ : 0;
+  if (!(left > 0 && left < kMostLeft)) return;
   for (std::size_t k = 0; k < light_.size(); ++k) {
     added_[k] = left / (1 - left) * (light_[k] - before_[k]);
   }
@@ -105,7 +118,9 @@ void IndirectSources::extrapolate() {
 void IndirectSources::add(std::size_t root, Vec2 at, std::span<double> sum) const {
   const std::size_t k = surface_.roots.patch[root] * bands_;
   const bool evaluated = lookup_.add(field_, root, at, sum);
-  for (std::size_t b = 0; b < bands_; ++b) sum[b] += evaluated ? added_[k + b] : solved_[k + b];
+  for (std::size_t b = 0; b < bands_; ++b) {
+    sum[b] += evaluated ? added_[k + b] : light_[k + b] + added_[k + b];
+  }
 }
 
 }  // namespace radiosity

@@ -11,7 +11,6 @@
 
 #include "base/parallel.h"
 #include "base/processor_clock.h"
-#include "elements/indirect_light.h"
 
 namespace radiosity {
 namespace {
@@ -39,8 +38,6 @@ constexpr double kIndirectEdge = 0.015;
 constexpr double kOverNoise = 3;
 /// An element is tested if its corners differ by this many tolerances.
 constexpr double kTestedSpread = 2;
-/// On facets of curved bodies, this many times as much.
-constexpr double kCurvedSpread = 4;
 /// If corners differ by more than this share, edges may be shorter by the factor below.
 constexpr double kSteepSpread = 0.5;
 constexpr double kSteepFraction = 0.125;
@@ -60,10 +57,12 @@ constexpr double kUneven = 7;
 /// So does a point for which two halves of its rays say that the mean is off by this many
 /// tolerances: around a small bright patch, such as the ceiling above a lamp.
 constexpr double kApart = 2;
-/// Sources of indirect light where patches share unknowns: passes of rays end when one moves less
-/// of the reflected power of indirect light than this share, or after so many.
+/// Sources of indirect light where patches share unknowns: passes end when one moves less of the
+/// reflected power of indirect light than this share, or after so many. Only the first one traces
+/// rays; where they end is kept: 64 MiB, or 16 rays a vertex if that is more.
 constexpr double kSettled = 0.003;
-constexpr int kMostPasses = 3;
+constexpr int kMostPasses = 12;
+constexpr double kMostKept = 1u << 24;
 /// A tolerance at which no element is cut.
 constexpr double kUncut = 1e9;
 /// Direct light by rays: its steps are not refined below this.
@@ -237,13 +236,16 @@ void LightSources::findSources() {
   IndirectSources indirect(mesh_, materials_, surface_, lookup_, indirect_);
   const bool shared = mesh_.clusters.has_value();
   const int wanted = options_.rays / (shared ? 8 : 4);
-  const int rays = raysFor(kFirstShare * corners(false), std::max(16, wanted));
+  const double fewer = shared ? std::max(1.0, options_.most_rays / kMostKept) : 1.0;
+  const int rays = raysFor(fewer * kFirstShare * corners(false), std::max(16, wanted));
+  KeptEnds ends;
   const auto pass = [&](int number) {
     const std::string stage = number == 1
                                   ? "sources of indirect light"
                                   : fmt::format("sources of indirect light, pass {}", number);
-    FieldSummary field = onePass(sourcesFrom(indirect), rays, kUncut, stage, false);
-    report_.rays += double(field.evaluated) * rays;
+    FieldSummary field =
+        onePass(sourcesFrom(indirect), rays, kUncut, stage, false, shared ? &ends : nullptr);
+    if (number == 1) report_.rays += double(field.evaluated) * rays;
     report_.indirect_vertices += field.evaluated;
     indirect.take(std::move(field.field));
   };
@@ -273,7 +275,7 @@ ElementField LightSources::indirectField() {
   // With Owen-scrambled points 1,024 rays have an error of about 1%.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
   FieldSummary second = onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise),
-                                "indirect light", true);
+                                "indirect light", true, nullptr);
   take(second);
   report_.rays += double(second.evaluated) * rays;
   report_.rays_a_vertex = rays;
@@ -296,20 +298,20 @@ double LightSources::corners(bool shown_alone) const {
 }
 
 FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
-                                   const std::string& stage, bool shown_alone) {
+                                   const std::string& stage, bool shown_alone, KeptEnds* kept) {
   const HemisphereSet set(std::size_t(rays), options_.seed);
   // Only for the last pass; so many that all points could take them within a fourth of most_rays.
   const int more_rays =
       shown_alone ? raysFor(4 * kTestedShare * corners(true), std::min(kMoreRays * rays, 4096)) : 0;
   std::optional<HemisphereSet> more;
   ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.lights, options_.seed);
+  if (kept != nullptr) light.keepEnds(*kept);
   if (more_rays > rays) {
     light.repeat(more.emplace(std::size_t(more_rays), options_.seed), kUneven * options_.tolerance,
                  kApart * options_.tolerance);
   }
   RefinementRule how = rule(tolerance, kIndirectEdge);
   how.least_spread = kTestedSpread * tolerance;
-  how.curved_spread = kCurvedSpread;
   if (!shown_alone) how.steep_fraction = 1;
   how.shown_alone = shown_alone;
   how.other_light = direct_of_patch_;

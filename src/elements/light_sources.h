@@ -9,6 +9,7 @@
 #include "elements/direct_light.h"
 #include "elements/emitters.h"
 #include "elements/field_builder.h"
+#include "elements/indirect_light.h"
 #include "elements/indirect_sources.h"
 #include "elements/source_map.h"
 #include "elements/surface_points.h"
@@ -66,8 +67,9 @@ class LightSources {
   void findUses(std::span<const std::uint8_t> wanted);
   SourceMap sourcesFrom(const IndirectSources& indirect) const;
   double corners(bool shown_alone) const;
+  /// `kept`: where rays of an earlier pass like this one end; null: they are traced, and not kept.
   FieldSummary onePass(const SourceMap& sources, int rays, double tolerance,
-                       const std::string& stage, bool shown_alone);
+                       const std::string& stage, bool shown_alone, KeptEnds* kept);
 
   const PatchMesh& mesh_;
   const PatchMaterials& materials_;

@@ -24,4 +24,19 @@ void SourceMap::layOut() {
   }
 }
 
+std::optional<std::uint32_t> SourceMap::cellAt(std::size_t patch, const Vec3& at) const {
+  const ElementRoots& roots = surface_.roots;
+  if (roots.of_patch[patch] == roots.of_patch[patch + 1]) return std::nullopt;
+  const std::size_t root = lookup_.rootAt(patch, at);
+  const int n = side_[root];
+  int x = 0;
+  int y = 0;
+  if (n > 1) {
+    const Vec2 place = lookup_.place(root, at);
+    x = std::min(int(place.x * n), n - 1);
+    y = std::min(int(place.y * n), n - 1);
+  }
+  return std::uint32_t(first_[root] + std::size_t(y * n + x));
+}
+
 }  // namespace radiosity

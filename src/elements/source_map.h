@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,21 +31,13 @@ class SourceMap {
   }
 
   int bands() const { return int(bands_); }
-  /// Adds the light that leaves a patch at one of its points to `sum` (bands).
-  void add(std::size_t patch, const Vec3& at, std::span<double> sum) const {
-    const ElementRoots& roots = surface_.roots;
-    if (roots.of_patch[patch] == roots.of_patch[patch + 1]) return;
-    const std::size_t root = lookup_.rootAt(patch, at);
-    const int n = side_[root];
-    int x = 0;
-    int y = 0;
-    if (n > 1) {
-      const Vec2 place = lookup_.place(root, at);
-      x = std::min(int(place.x * n), n - 1);
-      y = std::min(int(place.y * n), n - 1);
-    }
-    const float* cell = values_.data() + (first_[root] + std::size_t(y * n + x)) * bands_;
-    for (std::size_t b = 0; b < bands_; ++b) sum[b] += double(cell[b]);
+  /// The cell of a point of a patch; the same in all maps of one surface. Nothing if the patch has
+  /// no roots.
+  std::optional<std::uint32_t> cellAt(std::size_t patch, const Vec3& at) const;
+  /// Adds the light that leaves a cell to `sum` (bands).
+  void add(std::uint32_t cell, std::span<double> sum) const {
+    const float* values = values_.data() + cell * bands_;
+    for (std::size_t b = 0; b < bands_; ++b) sum[b] += double(values[b]);
   }
 
  private:
