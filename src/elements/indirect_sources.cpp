@@ -73,6 +73,7 @@ void IndirectSources::take(ElementField field) {
   field_ = std::move(field);
   before_ = std::move(light_);
   light_ = patchMeans(mesh_, surface_.roots, lookup_, field_, bands_);
+  for (std::size_t k = 0; k < light_.size(); ++k) light_[k] += added_[k];
   raiseOthers();
   std::vector<double> moved(light_.size());
   for (std::size_t k = 0; k < light_.size(); ++k) moved[k] = std::abs(light_[k] - before_[k]);
@@ -105,13 +106,17 @@ double IndirectSources::reflectedPower(std::span<const double> irradiance) const
 
 void IndirectSources::keepMeans() {
   for (std::size_t k = 0; k < added_.size(); ++k) added_[k] = solved_[k] - light_[k];
+  light_.assign(solved_.begin(), solved_.end());
+  gained_ = 0;
 }
 
 void IndirectSources::extrapolate() {
   const double left = gained_before_ != 0 ? gained_ / gained_before_ : 0;
   if (!(left > 0 && left < kMostLeft)) return;
   for (std::size_t k = 0; k < light_.size(); ++k) {
-    added_[k] = left / (1 - left) * (light_[k] - before_[k]);
+    const double more = left / (1 - left) * (light_[k] - before_[k]);
+    added_[k] += more;
+    light_[k] += more;
   }
 }
 
@@ -119,7 +124,7 @@ void IndirectSources::add(std::size_t root, Vec2 at, std::span<double> sum) cons
   const std::size_t k = surface_.roots.patch[root] * bands_;
   const bool evaluated = lookup_.add(field_, root, at, sum);
   for (std::size_t b = 0; b < bands_; ++b) {
-    sum[b] += evaluated ? added_[k + b] : light_[k + b] + added_[k + b];
+    sum[b] += evaluated ? added_[k + b] : light_[k + b];
   }
 }
 

@@ -244,19 +244,16 @@ void LightSources::findSources() {
                                   ? "sources of indirect light"
                                   : fmt::format("sources of indirect light, pass {}", number);
     FieldSummary field =
-        onePass(sourcesFrom(indirect), rays, kUncut, stage, false, shared ? &ends : nullptr);
+        onePass(sourcesFrom(indirect), rays, kUncut, stage, false, &ends);
     if (number == 1) report_.rays += double(field.evaluated) * rays;
     report_.indirect_vertices += field.evaluated;
     indirect.take(std::move(field.field));
   };
   pass(1);
-  if (shared) {
-    const double little = kSettled * indirect.reflectedPower(indirect_);
-    for (int k = 2; k <= kMostPasses && (k == 2 || indirect.moved() > little); ++k) pass(k);
-    indirect.extrapolate();
-  } else {
-    indirect.keepMeans();
-  }
+  if (!shared) indirect.keepMeans();
+  const double little = kSettled * indirect.reflectedPower(indirect_);
+  for (int k = 2; k <= kMostPasses && (k == 2 || indirect.moved() > little); ++k) pass(k);
+  indirect.extrapolate();
   sources_ = std::make_unique<SourceMap>(sourcesFrom(indirect));
 }
 
