@@ -19,14 +19,14 @@ std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
 /// Indirect light that is reflected on. At first it is the solution's, constant over each patch. So
 /// a patch that is partly in a dark gap sends light into the gap and less of it to the room than it
 /// does: in a living room by others light was 5% too low. Each pass of rays computes it anew, with
-/// the shape that it has within patches.
+/// the shape that it has within patches, until little changes.
 ///
-/// A pass has errors of its own: interpolation between its few vertices, and noise. So where every
-/// patch has an unknown of its own, one pass is enough, and patches keep the means of the solution
-/// (keepMeans()). Where patches share unknowns the solution has only a fit to the light of each,
-/// and loses light at every bounce: passes follow until little changes (extrapolate()). Patches
-/// that are not evaluated gain the share of light that the others gain. (In the living room passes
-/// find 10% more indirect light than the solution has.)
+/// A pass has errors of its own: interpolation between its few vertices, and noise. Where every
+/// patch has an unknown of its own, the solution is what the first pass ought to find: the
+/// difference is added to all passes (keepMeans()). Where patches share unknowns the solution has
+/// only a fit to the light of each, and the passes' errors are the smaller ones. (In that living
+/// room they find 10% more indirect light than it has.) Patches that are not evaluated gain the
+/// share of light that the others gain.
 class IndirectSources {
  public:
   /// `solved`: N * bands, indirect irradiance of the solution. Keeps all by reference.
@@ -40,7 +40,7 @@ class IndirectSources {
   double reflectedPower(std::span<const double> irradiance) const;
   /// The sum of the sizes of the last pass's changes to all patches, W.
   double moved() const { return moved_; }
-  /// After the last pass: gives patches the means of the solution, with the shape of that pass.
+  /// After the first pass: patches have the means of the solution, with the shape of that pass.
   void keepMeans();
   /// After the last of two passes or more: adds the changes of all further ones, a geometric series
   /// by what all patches together have gained in the last two. (The sizes of changes fall faster at

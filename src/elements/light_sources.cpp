@@ -57,7 +57,7 @@ constexpr double kUneven = 7;
 /// So does a point for which two halves of its rays say that the mean is off by this many
 /// tolerances: around a small bright patch, such as the ceiling above a lamp.
 constexpr double kApart = 2;
-/// Sources of indirect light where patches share unknowns: passes end when one moves less of the
+/// Sources of indirect light: passes end when one moves less of the
 /// reflected power of indirect light than this share, or after so many. Only the first one traces
 /// rays; where they end is kept: 64 MiB, or 16 rays a vertex if that is more.
 constexpr double kSettled = 0.003;
@@ -236,7 +236,7 @@ void LightSources::findSources() {
   IndirectSources indirect(mesh_, materials_, surface_, lookup_, indirect_);
   const bool shared = mesh_.clusters.has_value();
   const int wanted = options_.rays / (shared ? 8 : 4);
-  const double fewer = shared ? std::max(1.0, options_.most_rays / kMostKept) : 1.0;
+  const double fewer = std::max(1.0, options_.most_rays / kMostKept);
   const int rays = raysFor(fewer * kFirstShare * corners(false), std::max(16, wanted));
   KeptEnds ends;
   const auto pass = [&](int number) {
