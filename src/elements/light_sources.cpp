@@ -243,8 +243,7 @@ void LightSources::findSources() {
     const std::string stage = number == 1
                                   ? "sources of indirect light"
                                   : fmt::format("sources of indirect light, pass {}", number);
-    FieldSummary field =
-        onePass(sourcesFrom(indirect), rays, kUncut, stage, false, &ends);
+    FieldSummary field = onePass(sourcesFrom(indirect), rays, kUncut, stage, false, &ends);
     if (number == 1) report_.rays += double(field.evaluated) * rays;
     report_.indirect_vertices += field.evaluated;
     indirect.take(std::move(field.field));
