@@ -73,7 +73,9 @@ void IndirectSources::take(ElementField field) {
   field_ = std::move(field);
   before_ = std::move(light_);
   light_ = patchMeans(mesh_, surface_.roots, lookup_, field_, bands_);
-  for (std::size_t k = 0; k < light_.size(); ++k) light_[k] += added_[k];
+  for (std::size_t k = 0; k < light_.size(); ++k) {
+    if (isEvaluated(k / bands_)) light_[k] += added_[k];
+  }
   raiseOthers();
   std::vector<double> moved(light_.size());
   for (std::size_t k = 0; k < light_.size(); ++k) moved[k] = std::abs(light_[k] - before_[k]);
