@@ -11,6 +11,7 @@
 
 #include "formfactor/computed_factors.h"
 #include "formfactor/exact_scenes.h"
+#include "support/mesh_builder.h"
 #include "support/scene_builder.h"
 
 namespace radiosity {
@@ -286,6 +287,49 @@ TEST(ClosedRows, ExactRowsThatSumToMoreThanOneSayIt) {
     }
   }
   EXPECT_GT(notes, 0u) << "else this is no test";
+}
+
+/// A room, in the floor of which a square patch `width` wide lies at a wall. There its corners are
+/// `lift` higher than the floor.
+PatchMesh roomWithLiftedCorners(double width, double lift) {
+  const Vec3 low(0, .7, lift);
+  const Vec3 high(0, .7 + width, lift);
+  const Vec3 low_in(width, low.y, 0);
+  const Vec3 high_in(width, high.y, 0);
+  const Vec3 low_end(2, low.y, 0);
+  const Vec3 high_end(2, high.y, 0);
+  test::MeshBuilder builder;
+  builder.polygon("room",
+                  {{{0, 0, 0}, {2, 0, 0}, low_end, high_end, {2, 1.5, 0}, {0, 1.5, 0}, high, low}},
+                  {{{0, 0, 0}, {2, 0, 0}, low_end, low_in, low},
+                   {low, low_in, high_in, high},
+                   {low_in, low_end, high_end, high_in},
+                   {high, high_in, high_end, {2, 1.5, 0}, {0, 1.5, 0}}});
+  builder.polygon("room", {{{0, 0, 0}, low, high, {0, 1.5, 0}, {0, 1.5, 1}, {0, 0, 1}}});
+  builder.polygon("room", {{{2, 0, 0}, {2, 0, 1}, {2, 1.5, 1}, {2, 1.5, 0}, high_end, low_end}});
+  builder.polygon("room", {{{0, 0, 0}, {0, 0, 1}, {2, 0, 1}, {2, 0, 0}}});
+  builder.polygon("room", {{{0, 1.5, 0}, {2, 1.5, 0}, {2, 1.5, 1}, {0, 1.5, 1}}});
+  builder.polygon("room", {{{0, 0, 1}, {0, 1.5, 1}, {2, 1.5, 1}, {2, 0, 1}}});
+  return builder.build();
+}
+
+// A patch some coincidences wide is tilted by corners that are not quite in its plane, and misses
+// part of the wall. That is an error of its row, and no opening.
+TEST(ClosedRows, APatchSomeCoincidencesWideOpensNoRoom) {
+  const PatchMesh mesh = roomWithLiftedCorners(3e-6, 1.2e-7);
+  for (const FormFactorMethod method : kMethods) {
+    const bool exact = method == FormFactorMethod::exact;
+    const FormFactors f = test::computed(mesh, by(method, exact ? 1e-4 : 1e-2));
+    EXPECT_TRUE(f.report.closed);
+    if (!exact) continue;
+    double largest = 0;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      const double off = std::abs(f.fronts[i] + f.backs[i] - 1);
+      largest = std::max(largest, off);
+      EXPECT_LE(off, std::sqrt(double(mesh.size()) + 1) * f.error[i] + 1e-5) << i;
+    }
+    EXPECT_GT(largest, 1e-2) << "else this is no test";
+  }
 }
 
 // Rays that miss what the mesh proves are counted, and never take power with them.

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <optional>
+#include <span>
 
 #include "base/figure_text.h"
 #include "base/made.h"
@@ -35,7 +37,8 @@ constexpr double kRecheckLeastTight = 1024;
 /// If emitters have more pairs than this, they are not a small part of the scene, and their pairs
 /// are evaluated as all others.
 constexpr std::size_t kMostEmitterPairs = 1'000'000;
-/// A closed row may miss this share of its view, and the tolerance: more is no rounding.
+/// A closed row may miss this share of its view, the tolerance, and missedAroundPatch(): more is no
+/// rounding.
 constexpr double kMostMissing = 0.01;
 
 std::size_t recheckEvery(double occluded_pairs, double tolerance) {
@@ -148,15 +151,28 @@ void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_for
   for (std::size_t k = 0; k < order.ranked; ++k) result.error[order.patch[k]] = figure[k];
 }
 
+/// The most that a row can miss because corners are up to the coincidence off their planes: what
+/// passes a strip of that width around the patch, as a share of its view. That is little but for
+/// patches that are themselves no more than some coincidences wide.
+double missedAroundPatch(const PatchMesh& mesh, Index patch, double coincidence) {
+  const std::span<const Index> outline = mesh.outline(patch);
+  double perimeter = 0;
+  for (std::size_t k = 0, last = outline.size() - 1; k < outline.size(); last = k++) {
+    perimeter += glm::distance(mesh.vertices[outline[last]], mesh.vertices[outline[k]]);
+  }
+  return coincidence * perimeter / mesh.area[patch];
+}
+
 /// Sets fronts to the sums of the matrix's rows, and the sky of open rows to the rest. What a
 /// closed row misses, or any row has beyond 1, is its error.
 void setAccounts(const PatchMesh& mesh, const PatchOrder& order, double tolerance,
                  ClosedRows& closed, FormFactors& result) {
+  const double coincidence = coincidenceOf(mesh);
   result.fronts = result.matrix->rowSums();
   for (std::size_t k = 0; k < order.ranked; ++k) {
     const Index i = order.patch[k];
     const double rest = 1 - result.fronts[i] - result.backs[i];
-    closed.keeps(i, rest, kMostMissing + tolerance);
+    closed.keeps(i, rest, kMostMissing + tolerance + missedAroundPatch(mesh, i, coincidence));
     result.sky[i] = std::max(0.0, rest);
   }
   closed.balance(result);
