@@ -28,7 +28,8 @@ struct OccludedExchange {
   /// The share by which the points' sum of the unoccluded exchange misses its closed form: if
   /// large, the points do not resolve the elements' nearness.
   double unresolved = 0;
-  bool cut_short = false;  ///< kept with a larger error than accepted: it took too much
+  bool cut_short = false;   ///< kept with a larger error than accepted: it took too much
+  bool too_narrow = false;  ///< an element, for the precision of the clipping
 };
 
 struct OccludedPair {
@@ -57,9 +58,9 @@ double allowedError(const ElementSet& elements, const OccludedPair& pair, double
 ///
 /// They do not cancel if the quadrature is all wrong: if a sliver touches a large element, none of
 /// a few points on the latter lies where the exchange takes place. Pairs whose points miss the
-/// unoccluded value by more than kPairResolved, or that need many points in single precision, are
-/// evaluated again: in double precision, then, if that fails, from the other end; then, if the two
-/// disagree, more strictly from both.
+/// unoccluded value by more than kPairResolved, or that need many points in single precision or
+/// have an element too narrow for it, are evaluated again: in double precision, then, if that
+/// fails, from the other end; then, if the two disagree, more strictly from both.
 class OccludedKernel {
  public:
   /// `tolerance`: as FormFactorOptions::tolerance. Elements and occluders are kept by reference.
