@@ -2,13 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 
 namespace radiosity {
 namespace {
 
-/// Of bodies with more edges, so many are looked at: their neighbours are alike.
+/// Of bodies with more edges, so many are looked at, one of each few that follow each other.
 constexpr std::size_t kMostEdges = 64;
+
+/// Which of `step` edges is looked at, of those with the number `group`. Not always the first:
+/// hulls may list the edges of one side at even places and those of the other at odd ones. (A
+/// column of 69 edges, 1e-3: all 49 points missed 5% of a pair past the side that was left out.)
+std::size_t placeIn(std::size_t group, std::size_t step) {
+  return std::size_t((std::uint32_t(group) * 0x9e3779b1u) >> 16) % step;
+}
 
 /// An edge is taken to be no nearer to an end than this share of the way.
 constexpr double kNearest = 0.02;
@@ -93,7 +101,8 @@ void ShadowChange::add(const Occluder& body, const BothEnds& distance2) {
     }
   } else {
     for (std::size_t k = 0; k < body.edges.size(); k += step) {
-      const Occluder::Edge& edge = body.edges[k];
+      const std::size_t place = std::min(k + placeIn(k / step, step), body.edges.size() - 1);
+      const Occluder::Edge& edge = body.edges[place];
       addEdge(see(body.corners[edge.from]), see(body.corners[edge.to]), most);
     }
   }
