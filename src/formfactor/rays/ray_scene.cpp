@@ -8,6 +8,7 @@
 
 #include "base/geometry/box.h"
 #include "base/geometry/box_tree.h"
+#include "formfactor/border_share.h"
 #include "formfactor/patch_seed.h"
 #include "formfactor/row_accounts.h"
 #include "mesh/clusters/cluster_means.h"
@@ -27,17 +28,6 @@ constexpr double kUnresolved = 2 * kRayLift;
 constexpr double kNarrow = 0.02;
 /// The sine between planes that are one.
 constexpr double kParallel = 1e-6;
-
-/// The share of a patch that lies within `width` of its border.
-double borderShare(const PatchMesh& mesh, std::size_t patch, double width) {
-  const auto outline = mesh.outline(patch);
-  double border = 0;
-  for (std::size_t c = 0; c < outline.size(); ++c) {
-    border +=
-        glm::distance(mesh.vertices[outline[c]], mesh.vertices[outline[(c + 1) % outline.size()]]);
-  }
-  return mesh.area[patch] > 0 ? std::min(width * border / mesh.area[patch], 1.0) : 0.0;
-}
 
 Box3 boxOfPatch(const PatchMesh& mesh, std::size_t patch) {
   Box3 box;

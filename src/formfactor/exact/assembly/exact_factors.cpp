@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <optional>
-#include <span>
 
 #include "base/figure_text.h"
 #include "base/made.h"
 #include "base/processor_clock.h"
+#include "formfactor/border_share.h"
 #include "formfactor/closed_rows.h"
 #include "formfactor/exact/assembly/exact_scene.h"
 #include "formfactor/exact/assembly/row_sample.h"
@@ -37,8 +36,9 @@ constexpr double kRecheckLeastTight = 1024;
 /// If emitters have more pairs than this, they are not a small part of the scene, and their pairs
 /// are evaluated as all others.
 constexpr std::size_t kMostEmitterPairs = 1'000'000;
-/// A closed row may miss this share of its view, the tolerance, and missedAroundPatch(): more is no
-/// rounding.
+/// A closed row may miss this share of its view and the tolerance: more is no rounding. Corners may
+/// be up to the coincidence off their planes, so what passes a strip of that width along the border
+/// may be missing, too: little but for patches that are themselves some coincidences wide.
 constexpr double kMostMissing = 0.01;
 
 std::size_t recheckEvery(double occluded_pairs, double tolerance) {
@@ -151,18 +151,6 @@ void setErrors(const PatchOrder& order, const ErrorSums& sums, double closed_for
   for (std::size_t k = 0; k < order.ranked; ++k) result.error[order.patch[k]] = figure[k];
 }
 
-/// The most that a row can miss because corners are up to the coincidence off their planes: what
-/// passes a strip of that width around the patch, as a share of its view. That is little but for
-/// patches that are themselves no more than some coincidences wide.
-double missedAroundPatch(const PatchMesh& mesh, Index patch, double coincidence) {
-  const std::span<const Index> outline = mesh.outline(patch);
-  double perimeter = 0;
-  for (std::size_t k = 0, last = outline.size() - 1; k < outline.size(); last = k++) {
-    perimeter += glm::distance(mesh.vertices[outline[last]], mesh.vertices[outline[k]]);
-  }
-  return coincidence * perimeter / mesh.area[patch];
-}
-
 /// Sets fronts to the sums of the matrix's rows, and the sky of open rows to the rest. What a
 /// closed row misses, or any row has beyond 1, is its error.
 void setAccounts(const PatchMesh& mesh, const PatchOrder& order, double tolerance,
@@ -172,7 +160,7 @@ void setAccounts(const PatchMesh& mesh, const PatchOrder& order, double toleranc
   for (std::size_t k = 0; k < order.ranked; ++k) {
     const Index i = order.patch[k];
     const double rest = 1 - result.fronts[i] - result.backs[i];
-    closed.keeps(i, rest, kMostMissing + tolerance + missedAroundPatch(mesh, i, coincidence));
+    closed.keeps(i, rest, kMostMissing + tolerance + borderShare(mesh, i, coincidence));
     result.sky[i] = std::max(0.0, rest);
   }
   closed.balance(result);
