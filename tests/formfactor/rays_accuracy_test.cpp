@@ -179,5 +179,26 @@ TEST(RaysAccuracy, AnEntryThatIsAllOfARowIsUncertainByItsOtherEnd) {
   EXPECT_NEAR(variance[1], 1e-4 * variance[0], 1e-15);
 }
 
+/// What two patches of few rays see of each other may be missed from both ends, however often the
+/// many rays of a third one hit them.
+TEST(RaysAccuracy, HitsByOneOtherRowDoNotTellOfTheRest) {
+  std::vector<RayRow> rows(3);
+  rows[0].rays = 1000;
+  rows[1].rays = 1000;
+  rows[2].rays = 1000000;
+  rows[2].columns = {0};
+  rows[2].hits = {{50, 50}};
+  const std::vector<double> area{1, 1, 1};
+  std::vector<RowAccuracy> accuracy(3);
+  forMergedRows(rows, area, KnownEntries(), {}, nullptr, [&](const MergedRow& merged) {
+    const std::size_t k = merged.position;
+    accuracy[k] = accuracyOf(merged, rows[k], area[k]);
+  });
+  EXPECT_TRUE(accuracy[0].isUnknown());
+  EXPECT_NEAR(accuracy[0].hits, 2000 * 50 / 1001000.0, 1e-9);
+  EXPECT_TRUE(accuracy[1].isUnknown());
+  EXPECT_FALSE(accuracy[2].isUnknown());
+}
+
 }  // namespace
 }  // namespace radiosity

@@ -227,7 +227,8 @@ TEST(AimedRays, AnElementAndASphereFindEachOther) {
     const FormFactors f = test::computed(mesh, byRays(1e-2, seed));
     EXPECT_NEAR(f.fronts[0], exact, 1e-2 * exact) << "seed " << seed;
     EXPECT_LT(f.error[0], 0.1 * exact);
-    EXPECT_EQ(f.report.rays.short_rows, 0u);
+    // The four facets that see it at the smallest angle are hit by its rays, and hardly hit it.
+    EXPECT_LE(f.report.rays.short_rows, 4u);
     EXPECT_TRUE(f.report.notes.empty());
   }
 }

@@ -203,7 +203,7 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       const std::span<const KnownEntries::Entry> entries = known.at(k);
       const bool all_known = known.rowAt(k) != nullptr;
       std::size_t next = 0;  // into entries
-      double all_hits = 0;
+      double counted = 0;
       const auto addKnownBefore = [&](std::size_t end) {
         for (; next < entries.size() && entries[next].position < end; ++next) {
           const double factor = entries[next].exchange / area[k];
@@ -226,8 +226,8 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
           hits_of[0] += double(own[r]);
           hits_of[1] += double(of_j[r]);
         }
-        all_hits += hits_of[0] + hits_of[1];
         const double mean = 0.5 * (factor[0] + factor[1]);
+        counted += mean;
         // A row that sees little but j knows this well by its own rays; j's may be few.
         const double of_hits = pairHitsVariance(mean, hits_of, {area[k], area[j]});
         merging.variances.push_back(foreseenVariance(mean, hits_of[0] + hits_of[1], of_hits));
@@ -235,8 +235,8 @@ void forMergedRows(std::span<const RayRow> rows, std::span<const double> area,
       touchRows(scratch, rows[k].bytes());
       forBothEnds(rows[k], handed.columns(k), handed.hits(k), n, merge);
       addKnownBefore(n);
-      visit({k, n, merging.columns, merging.factors, merging.variances, entries, all_hits,
-             all_known});
+      visit(
+          {k, n, merging.columns, merging.factors, merging.variances, entries, counted, all_known});
     });
     first = last;
   }
@@ -275,7 +275,8 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
   if (!merged.all_known) {
     addBacks(own, merged.unknowns, accuracy);
     accuracy.rays = own.counted();
-    accuracy.hits = merged.hits;
+    // Not those of other rows: however often one hits it, it says nothing of the rest.
+    accuracy.hits = accuracy.rays * merged.counted;
   }
   double squares = 0;
   double fourths = 0;

@@ -69,7 +69,7 @@ struct MergedRow {
   /// (foreseenVariance()); 0 for known ones.
   std::span<const double> variances;
   std::span<const KnownEntries::Entry> known;  ///< the known ones among the columns
-  double hits = 0;                             ///< of all columns, from both ends
+  double counted = 0;                          ///< the sum of the factors that are not known
   bool all_known = false;                      ///< the row rests on no rays
 };
 

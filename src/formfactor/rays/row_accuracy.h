@@ -25,7 +25,7 @@ struct RowAccuracy {
   /// an error of as much, not in `error`.
   double unresolved = 0;
   double rays = 0;  ///< its own that count, of both replicates
-  double hits = 0;  ///< on fronts, from both ends
+  double hits = 0;  ///< of them, those that fronts are to take by the merged row
 
   /// A bound that holds in 99% of rows on sqrt(sum_j (F_ij - true F_ij)^2), backs among the j:
   /// error squared over its estimate is distributed like F with `terms` degrees of freedom above
