@@ -72,6 +72,9 @@ class ErrorSums {
   /// pairs; 0 if there are none.
   double recheckRatio() const;
 
+  /// What all errors of occluded pairs are to be raised by, 1 or more.
+  double raise() const;
+
   /// figure[row], absolute, of F. `area`: of the rows; `closed_form`: published relative accuracy
   /// of closed forms. Returns the matrix figure: sqrt(sum A err^2 / sum A F^2), with the same
   /// margin.

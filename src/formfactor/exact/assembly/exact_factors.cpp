@@ -27,12 +27,6 @@
 namespace radiosity {
 namespace {
 
-/// About this share of the occluded pairs is evaluated again.
-constexpr double kRecheckShare = 1.0 / 256;
-/// At least this many pairs are evaluated again, as far as there are. In double precision they are
-/// more: fewer pairs hold the errors that rules miss there, and pairs cost more to begin with.
-constexpr double kRecheckLeast = 512;
-constexpr double kRecheckLeastTight = 1024;
 /// If emitters have more pairs than this, they are not a small part of the scene, and their pairs
 /// are evaluated as all others.
 constexpr std::size_t kMostEmitterPairs = 1'000'000;
@@ -40,12 +34,6 @@ constexpr std::size_t kMostEmitterPairs = 1'000'000;
 /// be up to the coincidence off their planes, so what passes a strip of that width along the border
 /// may be missing, too: little but for patches that are themselves some coincidences wide.
 constexpr double kMostMissing = 0.01;
-
-std::size_t recheckEvery(double occluded_pairs, double tolerance) {
-  const double least = tolerance < kSinglePrecision ? kRecheckLeastTight : kRecheckLeast;
-  const double share = std::max(kRecheckShare, least / std::max(occluded_pairs, 1.0));
-  return std::size_t(std::max(1.0, 1 / share));
-}
 
 /// The emitters whose light is to be good to some percent at each receiver.
 std::vector<Index> emittersOf(const FormFactorOptions& options, std::size_t unknowns) {
@@ -94,7 +82,7 @@ struct RowStore {
 RowSums fillRows(RowStore& rows, const ExactScene& scene, const ExactKernels& kernels,
                  std::size_t recheck_every, const RowRun& run) {
   const RowContext context = rows.context(scene, kernels, recheck_every, run.progress);
-  TaskBlocks blocks(context, scene.tasks);
+  TaskBlocks blocks(context, scene.tasks, scene.tasks.size());
   makeAllRows(blocks, run);
   return blocks.sums();
 }

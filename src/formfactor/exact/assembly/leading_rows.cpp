@@ -1,14 +1,12 @@
 #include "formfactor/exact/assembly/leading_rows.h"
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/parallel.h"
 #include "formfactor/exact/assembly/row_assembly.h"
+#include "formfactor/exact/assembly/task_blocks.h"
 #include "formfactor/exact/error_model.h"
 #include "matrix/run_row.h"
 #include "matrix/uncertain_row.h"
@@ -140,9 +138,12 @@ RowSample LeadingRows::sample(Progress& progress) const {
   return sample;
 }
 
-double LeadingRows::work(RowSample& sample) const {
-  foreseeCost(scene_, options_.toleranceOf(FormFactorMethod::exact), sample);
-  return estimateExact(scene_, sample, options_).work;
+double LeadingRows::work(RowSample& sample) {
+  const double tolerance = options_.toleranceOf(FormFactorMethod::exact);
+  foreseeCost(scene_, tolerance, sample);
+  const ExactEstimate estimate = estimateExact(scene_, sample, options_);
+  recheck_every_ = recheckEvery(estimate.occluded_pairs, tolerance);
+  return estimate.work;
 }
 
 double LeadingRows::seconds(const RowSample& sample, Progress& progress) const {
@@ -161,38 +162,21 @@ std::size_t LeadingRows::bytes() const {
          allowedThreads() * scene_.tasks.panelBytes(scene_.elements);
 }
 
-void LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const {
+double LeadingRows::fill(Triangle& triangle, const ExactKernels& kernels,
+                         Progress& progress) const {
   const Emitters emitters(mesh_, scene_.order, wanted_);
-  const RowContext context{scene_.elements,
-                           scene_.order,
-                           scene_.chunks,
-                           scene_.visibility,
-                           kernels.unoccluded,
-                           kernels.occluded,
-                           progress,
-                           std::numeric_limits<std::size_t>::max(),  // none is rechecked
-                           &emitters,
-                           triangle.matrix,
-                           &triangle.uncertain,
-                           triangle.backs,
+  const RowContext context{scene_.elements,    scene_.order,        scene_.chunks,
+                           scene_.visibility,  kernels.unoccluded,  kernels.occluded,
+                           progress,           recheck_every_,      &emitters,
+                           triangle.matrix,    &triangle.uncertain, triangle.backs,
                            triangle.seen_backs};
-  struct Worker {
-    RowAssembly assembly;
-    RowSums sums;  // unused: each pair has its own error
-  };
-  tbb::enumerable_thread_specific<Worker> workers([&] {
-    return Worker{RowAssembly(context), RowSums(scene_.order.ranked)};
-  });
-  const std::size_t tasks = scene_.leadingTasks();
-  progress.begin("form factors of emitters", tasks);
-  parallelFor(tasks, 1, [&](std::size_t t) {
-    if (progress.cancelled()) return;
-    Worker& worker = workers.local();
-    worker.assembly.run(scene_.tasks[t], worker.sums);
-    progress.advance();
-  });
-  progress.check();
+  TaskBlocks blocks(context, scene_.tasks, scene_.leadingTasks());
+  std::size_t rows = 0;
+  for (std::size_t block = 0; block < blocks.count(); ++block) rows += blocks.steps(block);
+  progress.begin("form factors of emitters", rows);
+  makeBlocks(blocks, RowRun{progress});
   progress.end();
+  return blocks.sums().error.raise();
 }
 
 std::vector<KnownRow> LeadingRows::compute(Progress& progress) const {
@@ -201,7 +185,7 @@ std::vector<KnownRow> LeadingRows::compute(Progress& progress) const {
   const ExactKernels kernels(scene_, options_);
   const PatchOrder& order = scene_.order;
   Triangle triangle(mesh_, order);
-  fill(triangle, kernels, progress);
+  const double raise = fill(triangle, kernels, progress);
   UnknownRows rows(mesh_, wanted_);
   const double closed_forms = kRowClosedForms * kernels.closed_form;
   std::vector<double> errors(mesh_.size());
@@ -210,15 +194,15 @@ std::vector<KnownRow> LeadingRows::compute(Progress& progress) const {
     const Index patch = order.patch[k];
     const double area = mesh_.area[patch];
     readErrors(triangle.uncertain, k, errors);
-    forRuns(triangle.matrix.upperRuns(k),
-            [&](std::size_t offset, const auto* values, std::size_t count) {
-              for (std::size_t m = 0; m < count; ++m) {
-                const std::size_t other = k + 1 + offset + m;
-                const double factor = double(values[m]);
-                const double error = errors[other] > 0 ? errors[other] : closed_forms * factor;
-                rows.add(patch, order.patch[other], area * factor, area * error);
-              }
-            });
+    forRuns(triangle.matrix.upperRuns(k), [&](std::size_t offset, const auto* values,
+                                              std::size_t count) {
+      for (std::size_t m = 0; m < count; ++m) {
+        const std::size_t other = k + 1 + offset + m;
+        const double factor = double(values[m]);
+        const double error = errors[other] > 0 ? raise * errors[other] : closed_forms * factor;
+        rows.add(patch, order.patch[other], area * factor, area * error);
+      }
+    });
     rows.addBacks(patch, triangle.seen_backs[patch]);
   }
   return rows.take();

@@ -26,26 +26,27 @@ class LeadingRows {
   /// A sample of the rows, for work() and seconds().
   RowSample sample(Progress& progress) const;
   /// The work of compute() to the tolerance set, foreseen as ExactEstimate::work: the same in every
-  /// run. Sets the sample's cost.
-  double work(RowSample& sample) const;
+  /// run. Sets the sample's cost, and how many pairs compute() evaluates again.
+  double work(RowSample& sample);
   /// The seconds of compute() by the clock, here and now, from a sample given to work().
   double seconds(const RowSample& sample, Progress& progress) const;
   /// Bytes held by compute() beside this, about.
   std::size_t bytes() const;
 
-  /// A row for each wanted unknown; no rows if none of these has elements. The same bits for any
-  /// number of threads. Throws Cancelled.
+  /// After work(): a row for each wanted unknown; no rows if none of these has elements. The same
+  /// bits for any number of threads. Throws Cancelled.
   std::vector<KnownRow> compute(Progress& progress) const;
 
  private:
   struct Triangle;
-  /// Makes the rows that lead.
-  void fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const;
+  /// Makes the rows that lead. Returns what errors are to be raised by (ErrorSums).
+  double fill(Triangle& triangle, const ExactKernels& kernels, Progress& progress) const;
 
   const PatchMesh& mesh_;
   std::vector<Index> wanted_;
   FormFactorOptions options_;
   ExactScene scene_;
+  std::size_t recheck_every_ = 1;
 };
 
 }  // namespace radiosity

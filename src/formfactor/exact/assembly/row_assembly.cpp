@@ -13,6 +13,13 @@
 namespace radiosity {
 namespace {
 
+/// About this share of the occluded pairs is evaluated again.
+constexpr double kRecheckShare = 1.0 / 256;
+/// At least this many pairs are evaluated again, as far as there are. In double precision they are
+/// more: fewer pairs hold the errors that rules miss there, and pairs cost more to begin with.
+constexpr double kRecheckLeast = 512;
+constexpr double kRecheckLeastTight = 1024;
+
 /// What a receiver gets is to be good to 5%. Those that get less than this share of the mean are
 /// dark: their errors count as if they got so much.
 constexpr double kAcceptedShare = 0.04;
@@ -41,6 +48,12 @@ std::uint64_t pairHash(Index row, Index column) {
 }
 
 }  // namespace
+
+std::size_t recheckEvery(double occluded_pairs, double tolerance) {
+  const double least = tolerance < kSinglePrecision ? kRecheckLeastTight : kRecheckLeast;
+  const double share = std::max(kRecheckShare, least / std::max(occluded_pairs, 1.0));
+  return std::size_t(std::max(1.0, 1 / share));
+}
 
 PatchOrder::PatchOrder(const PatchMesh& mesh, const ElementSet& elements)
     : rank(elements.patch_elements) {

@@ -53,6 +53,9 @@ struct Emitters {
   double scene_area;                ///< of all patches, in ElementSet's units
 };
 
+/// One in how many of these occluded pairs is evaluated again.
+std::size_t recheckEvery(double occluded_pairs, double tolerance);
+
 /// Inputs that all rows share, and the places that rows are stored in.
 struct RowContext {
   const ElementSet& elements;
@@ -62,7 +65,7 @@ struct RowContext {
   const UnoccludedKernel& unoccluded;
   const OccludedKernel& occluded;
   const Progress& progress;
-  std::size_t recheck_every;  ///< about one occluded pair in this many is evaluated again
+  std::size_t recheck_every;  ///< recheckEvery()
   const Emitters* emitters;   ///< may be null
   SymmetricMatrix& matrix;
   UncertainEntries* uncertain;  ///< takes occluded pairs and their errors; may be null

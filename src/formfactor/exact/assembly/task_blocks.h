@@ -19,17 +19,16 @@ namespace radiosity {
 /// stay in the process that makes them; process 0 gets their backs and the sums.
 class TaskBlocks final : public RowBlocks {
  public:
-  /// Keeps both by reference.
-  TaskBlocks(const RowContext& context, const RowTasks& tasks)
-      : context_(context),
-        tasks_(tasks),
-        sums_(tasks.size()),
-        workers_([this] { return Worker(context_); }) {}
+  /// The first `count` tasks. Keeps the others by reference.
+  TaskBlocks(const RowContext& context, const RowTasks& tasks, std::size_t count)
+      : context_(context), tasks_(tasks), sums_(count), count_(count), workers_([this] {
+          return Worker(context_);
+        }) {}
 
   /// Of all tasks, once they are made. In process 0.
   RowSums sums();
 
-  std::size_t count() const override { return tasks_.size(); }
+  std::size_t count() const override { return count_; }
   std::size_t steps(std::size_t block) const override;
   void make(std::size_t block) override;
   RowBlock kind() const override { return RowBlock::exact_task; }
@@ -61,6 +60,7 @@ class TaskBlocks final : public RowBlocks {
   const RowContext& context_;
   const RowTasks& tasks_;
   BlockSums<RowSums> sums_;
+  std::size_t count_;
   mutable tbb::enumerable_thread_specific<Worker> workers_;
 };
 

@@ -116,7 +116,8 @@ void OccludedKernel::integrate(const ClipKernels<T>& kernels, const Batch& batch
       const double of_missed = 2 * seen * (1 - seen) * missed;
       exchange = {pair.unoccluded * seen,
                   pair.unoccluded * std::hypot(kPairMargin * found.error(), of_missed), missed,
-                  found.cut_short, isTooNarrow<T>(elements_, pair, found.allowed)};
+                  found.cut_short,
+                  isTooNarrow<T>(elements_, pair, found.allowed) || group[k].stood_on};
       if (!std::isfinite(exchange.exchange) || !std::isfinite(exchange.error)) {
         exchange = exchangeBySegments(elements_, occluders_, pair, batch.occluder_list);
         ++batch.counts.by_segments;
@@ -163,7 +164,7 @@ void OccludedKernel::evaluateAgain(const Batch& batch) const {
     doubtful.clear();
     for (std::size_t k = 0; k < batch.pairs.size(); ++k) {
       const OccludedExchange& x = batch.out[k];
-      if (x.unresolved > kPairResolved || x.cut_short || x.too_narrow) doubtful.push_back(k);
+      if (x.unresolved > kPairResolved || x.cut_short || x.uncertain) doubtful.push_back(k);
     }
   };
   find();

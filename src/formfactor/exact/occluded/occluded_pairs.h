@@ -28,8 +28,10 @@ struct OccludedExchange {
   /// The share by which the points' sum of the unoccluded exchange misses its closed form: if
   /// large, the points do not resolve the elements' nearness.
   double unresolved = 0;
-  bool cut_short = false;   ///< kept with a larger error than accepted: it took too much
-  bool too_narrow = false;  ///< an element, for the precision of the clipping
+  bool cut_short = false;  ///< kept with a larger error than accepted: it took too much
+  /// An element is too narrow for the precision of the clipping, or stood on
+  /// (EdgeDistances::isStoodOn()).
+  bool uncertain = false;
 };
 
 struct OccludedPair {
@@ -59,8 +61,9 @@ double allowedError(const ElementSet& elements, const OccludedPair& pair, double
 /// They do not cancel if the quadrature is all wrong: if a sliver touches a large element, none of
 /// a few points on the latter lies where the exchange takes place. Pairs whose points miss the
 /// unoccluded value by more than kPairResolved, or that need many points in single precision or
-/// have an element too narrow for it, are evaluated again: in double precision, then, if that
-/// fails, from the other end; then, if the two disagree, more strictly from both.
+/// have an element too narrow for it or with something standing on it, are evaluated again: in
+/// double precision, then, if that fails, from the other end; then, if the two disagree, more
+/// strictly from both.
 class OccludedKernel {
  public:
   /// `tolerance`: as FormFactorOptions::tolerance. Elements and occluders are kept by reference.

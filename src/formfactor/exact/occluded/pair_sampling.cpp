@@ -21,20 +21,39 @@ constexpr double kAlike = 1 + 1e-5;
 /// Bodies with more faces than these are not tested for being thin.
 constexpr std::size_t kMostThinPlanes = 16;
 
-struct Heights {
+struct Extent {
   double least = std::numeric_limits<double>::infinity();
   double most = -least;
 };
 
 template <class Plane>
-Heights heightsOver(std::span<const Vec3> points, const Plane& plane) {
-  Heights h;
+Extent heightsOver(std::span<const Vec3> points, const Plane& plane) {
+  Extent h;
   for (const Vec3& p : points) {
     const double d = glm::dot(plane.normal, p) - plane.offset;
     h.least = std::min(h.least, d);
     h.most = std::max(h.most, d);
   }
   return h;
+}
+
+/// Adds the part of a segment within `width` of a plane to its extent along a direction.
+template <class Plane>
+void addPartNear(const Plane& plane, double width, const Vec3& a, const Vec3& b, const Vec3& along,
+                 Extent& extent) {
+  const double from = glm::dot(plane.normal, a) - plane.offset;
+  const double rise = glm::dot(plane.normal, b) - plane.offset - from;
+  if (rise == 0 && std::abs(from) > width) return;
+  const double lower = rise == 0 ? 0.0 : (-width - from) / rise;
+  const double upper = rise == 0 ? 1.0 : (width - from) / rise;
+  const double first = std::max(0.0, std::min(lower, upper));
+  const double last = std::min(1.0, std::max(lower, upper));
+  if (first > last) return;
+  for (const double t : {first, last}) {
+    const double place = glm::dot(along, a + t * (b - a));
+    extent.least = std::min(extent.least, place);
+    extent.most = std::max(extent.most, place);
+  }
 }
 
 double edgeDistance2(const Occluder& body, const Vec3& p) {
@@ -79,9 +98,33 @@ bool EdgeDistances::seesEdgeOn(Index element, Index occluder) const {
   if (plane.normal == Vec3(0.0)) return false;
   const double height = glm::dot(plane.normal, elements_.centroid[element]) - plane.offset;
   if (std::abs(height) >= elements_.radius[element]) return false;
-  const Heights h = heightsOver(elements_.outline(element), plane);
+  const Extent h = heightsOver(elements_.outline(element), plane);
   return h.least < elements_.coincidence && h.most > -elements_.coincidence &&
          h.most - h.least > elements_.coincidence;
+}
+
+bool EdgeDistances::isStoodOn(Index element, Index occluder) const {
+  const Occluder::Plane& plane = thin_[occluder];
+  if (plane.normal == Vec3(0.0)) return false;
+  const double height = glm::dot(plane.normal, elements_.centroid[element]) - plane.offset;
+  if (std::abs(height) >= elements_.radius[element]) return false;
+  const auto outline = elements_.outline(element);
+  const Extent h = heightsOver(outline, plane);
+  const double narrower = std::min(-h.least, h.most);
+  if (narrower <= elements_.coincidence) return false;
+  const Facet& facet = elements_.facets[elements_.facet[element]];
+  const Vec3 along = glm::cross(facet.normal, plane.normal);
+  Extent cut;  // of the element, along the line where the planes meet
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    addPartNear(plane, 0, outline[k], outline[(k + 1) % outline.size()], along, cut);
+  }
+  Extent foot;  // of the body, as far from the element as its narrower side is wide
+  const Occluder& body = occluders_.occluders[occluder];
+  for (const Occluder::Edge& edge : body.edges) {
+    addPartNear(facet, narrower, body.corners[edge.from], body.corners[edge.to], along, foot);
+  }
+  const double common = std::min(cut.most, foot.most) - std::max(cut.least, foot.least);
+  return common > elements_.coincidence * glm::length(along);
 }
 
 double EdgeDistances::squared(Index element, Index occluder) const {
@@ -118,8 +161,8 @@ const PairPreparation::Between& PairPreparation::between(Index occluder, Index r
   Between& found = between_[occluder];
   if (found.stamp != stamp_) {
     const Occluder& body = occluders_.occluders[occluder];
-    const Heights first = heightsOver(body.corners, elements_.facets[row_facet]);
-    const Heights second = heightsOver(body.corners, elements_.facets[column_facet]);
+    const Extent first = heightsOver(body.corners, elements_.facets[row_facet]);
+    const Extent second = heightsOver(body.corners, elements_.facets[column_facet]);
     const double touching = elements_.coincidence;
     found = {stamp_, first.most > touching && second.most > touching, first.least < -touching,
              second.least < -touching};
@@ -170,8 +213,8 @@ void PairPreparation::addPair(std::uint32_t number, const OccludedPair& given,
                               std::span<const Index> occluder_list, SampledEnd end) {
   const Index row_facet = elements_.facet[given.row];
   const Index column_facet = elements_.facet[given.column];
-  const Heights row = heightsOver(elements_.outline(given.row), elements_.facets[column_facet]);
-  const Heights column = heightsOver(elements_.outline(given.column), elements_.facets[row_facet]);
+  const Extent row = heightsOver(elements_.outline(given.row), elements_.facets[column_facet]);
+  const Extent column = heightsOver(elements_.outline(given.column), elements_.facets[row_facet]);
   const double touching = elements_.coincidence;
   if (row.most <= touching || column.most <= touching) return;
   SampledPair pair;
@@ -189,6 +232,9 @@ void PairPreparation::addPair(std::uint32_t number, const OccludedPair& given,
   const Index sampled = at_row_end ? given.row : given.column;
   pair.may_cross = (at_row_end ? nearest.row : nearest.column) <= reach * reach;
   pair.sampled = sampled;
+  const auto own = std::span<const Blocker>(blockers).subspan(pair.blockers_begin);
+  pair.stood_on = std::ranges::any_of(
+      own, [&](const Blocker& b) { return distances_.isStoodOn(sampled, b.id); });
   pair.target = at_row_end ? given.column : given.row;
   const bool row_cut = row.least < -touching;
   const bool column_cut = column.least < -touching;
