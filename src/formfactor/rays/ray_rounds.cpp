@@ -313,7 +313,9 @@ class Rounds {
   void finish() {
     if (loosened_ > 1) report_.loosened_tolerance = loosened_ * aim_.tolerance;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
-      report_.short_rows += isGoodEnough(k) ? 0 : 1;
+      // While no row has seen a front, rows stop for what they see of backs.
+      const bool saw_nothing = usual_norm_ == 0 && now_[k].is_unknown != 0;
+      report_.short_rows += isGoodEnough(k) && !saw_nothing ? 0 : 1;
     }
   }
 

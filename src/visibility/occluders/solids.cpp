@@ -284,11 +284,29 @@ class SolidSearch {
       const bool outward = glm::dot(polygon.normal, solid.body.planes[on.face].normal) > 0;
       if (!outward || !polygon.one_sided) looking.insert(on.face);
     }
+    addOverlapping(solid, looking);
     if (looking.size() != 1) return !looking.empty();
     for (Index k = 0; k < missing.size(); ++k) {
       if (missing[k] > 0 && k != *looking.begin()) return true;
     }
     return false;
+  }
+
+  /// Adds the faces through which polygons look in that reach beyond them. (Two columns between a
+  /// floor and a ceiling, whose parts within the columns see each other.)
+  void addOverlapping(const ConvexSolid& solid, std::set<Index>& looking) const {
+    const Occluder& body = solid.body;
+    all_.tree.query(boxAround(body, all_.coincidence), [&](Index p) {
+      const OccluderPolygon& polygon = all_.polygons[p];
+      for (Index k = 0; k < body.planes.size(); ++k) {
+        const bool outward = glm::dot(polygon.normal, body.planes[k].normal) > 0;
+        if ((outward && polygon.one_sided) || !growth_.isOn(polygon, body.planes[k])) continue;
+        Occluder prism = body;
+        prism.planes.erase(prism.planes.begin() + k);
+        if (areaInside(all_, polygon, prism, 0) > all_.coincidence * body.radius) looking.insert(k);
+      }
+      return true;
+    });
   }
 
   /// Finds the polygons on the solid's faces. `members`: ascending; their faces are known.
