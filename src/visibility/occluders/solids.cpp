@@ -297,6 +297,8 @@ class SolidSearch {
   void addOverlapping(const ConvexSolid& solid, std::set<Index>& looking) const {
     const Occluder& body = solid.body;
     all_.tree.query(boxAround(body, all_.coincidence), [&](Index p) {
+      const auto same = [](const ConvexSolid::OnFace& on) { return on.polygon; };
+      if (std::ranges::binary_search(solid.on_faces, p, {}, same)) return true;
       const OccluderPolygon& polygon = all_.polygons[p];
       for (Index k = 0; k < body.planes.size(); ++k) {
         const bool outward = glm::dot(polygon.normal, body.planes[k].normal) > 0;
