@@ -1,11 +1,16 @@
-// The indirect light of surfaces as sources of light, from pass to pass.
+// The light of surfaces as sources of indirect light, from pass to pass.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "elements/field_builder.h"
+#include "elements/source_cells.h"
 #include "elements/surface_points.h"
+#include "formfactor/rays/point_rays.h"
 #include "radiosity/elements.h"
 
 namespace radiosity {
@@ -16,54 +21,94 @@ std::vector<double> patchMeans(const PatchMesh& mesh, const ElementRoots& roots,
                                const ElementLookup& lookup, const ElementField& field,
                                std::size_t bands);
 
-/// Indirect light that is reflected on. At first it is the solution's, constant over each patch. So
-/// a patch that is partly in a dark gap sends light into the gap and less of it to the room than it
-/// does: in a living room by others light was 5% too low. Each pass of rays computes it anew, with
-/// the shape that it has within patches, until little changes.
-///
-/// A pass has errors of its own: interpolation between its few vertices, and noise. Where every
-/// patch has an unknown of its own, the solution is what the first pass ought to find: the
-/// difference is added to all passes (keepMeans()). Where patches share unknowns the solution has
-/// only a fit to the light of each, and the passes' errors are the smaller ones. (In that living
-/// room they find 10% more indirect light than it has.) Patches that are not evaluated gain the
-/// share of light that the others gain.
+/// What the sources of a scene are found from; all is kept by reference.
+struct SourceScene {
+  const PatchMesh& mesh;
+  const PatchMaterials& materials;
+  const ElementSurface& surface;
+  const ElementLookup& lookup;
+  const PointRays& rays;
+  const ElementField& direct;
+  std::span<const double> irradiance;  ///< N * bands: of the solution
+  /// N * bands: irradiance of the solution without direct light; with it, where that was not
+  /// evaluated.
+  std::span<const double> solved;
+  std::span<const RootUse> use;  ///< R; empty: all are shown
+  bool emission;                 ///< what surfaces emit comes with the indirect light
+};
+
+/// Each cell of the sources is a patch of its own: rays go from some of its places, once, and each
+/// pass computes its light anew from the cells where they end, as Jacobi's iteration does. It
+/// begins with the light of the solution, whose patches are coarser and may share unknowns, and
+/// ends when little changes. Where every patch has an unknown of its own, the solution knows what
+/// rays ought to find if each patch had a single radiosity: by how much they miss that, in the mean
+/// of a patch, is added in all passes (a control variate). Roots that are not evaluated keep the
+/// light of the solution, but for the share that all others gain.
 class IndirectSources {
  public:
-  /// `solved`: N * bands, indirect irradiance of the solution. Keeps all by reference.
-  IndirectSources(const PatchMesh& mesh, const PatchMaterials& materials,
-                  const ElementSurface& surface, const ElementLookup& lookup,
-                  std::span<const double> solved);
+  /// `rays`: of a cell, a multiple of kRaysOfPlace.
+  IndirectSources(const SourceScene& scene, std::size_t rays, std::uint64_t seed);
+  /// Rays that leave one place: the fewest of a HemisphereSet.
+  static constexpr std::size_t kRaysOfPlace = 16;
+  /// Cells of the roots that are evaluated.
+  static std::size_t countCells(const SourceScene& scene);
 
+  /// Finds where rays end. Throws Cancelled.
+  void trace(Progress& progress);
   /// The next pass.
-  void take(ElementField field);
-  /// Of irradiance (N * bands), over all patches and bands, W.
-  double reflectedPower(std::span<const double> irradiance) const;
-  /// The sum of the sizes of the last pass's changes to all patches, W.
+  void pass();
+  /// The reflected power of indirect light over all cells and bands, W.
+  double reflectedPower() const { return power_; }
+  /// The sum of the sizes of the last pass's changes to cells, W.
   double moved() const { return moved_; }
-  /// After the first pass: patches have the means of the solution, with the shape of that pass.
-  void keepMeans();
   /// After the last of two passes or more: adds the changes of all further ones, a geometric series
-  /// by what all patches together have gained in the last two. (The sizes of changes fall faster at
+  /// by what all cells together have gained in the last two. (The sizes of changes fall faster at
   /// first: local ones, which cancel, are among them.)
   void extrapolate();
 
-  /// Adds the light at a place of a root to `sum` (bands).
-  void add(std::size_t root, Vec2 at, std::span<double> sum) const;
+  std::size_t rays() const { return ends_.size(); }
+  std::size_t places() const { return cells_.size() * places_; }
+  SourceCells takeCells() { return std::move(sources_); }
 
  private:
-  bool isEvaluated(std::size_t patch) const;
-  void raiseOthers();
+  struct Cell {
+    Index root;
+    std::uint16_t x, y;
+  };
+  struct Light;
+  bool isEvaluated(std::size_t root) const {
+    return scene_.use.empty() || scene_.use[root] != RootUse::none;
+  }
+  Vec2 placeOf(const Cell& cell, std::size_t k) const;
+  double areaOf(const Cell& cell) const;
+  std::size_t slotOf(const Cell& cell) const {
+    return sources_.first(cell.root) + std::size_t(cell.y) * sources_.side(cell.root) + cell.x;
+  }
+  void findCorrections();
+  void begin();
+  void traceCell(std::size_t e);
+  void addPlace(std::size_t e, std::size_t p, Light& light) const;
+  double lightCell(std::size_t e, std::vector<float>& values, double& gained);
+  void keepOthers(std::vector<float>& values) const;
 
-  const PatchMesh& mesh_;
-  const PatchMaterials& materials_;
-  const ElementSurface& surface_;
-  const ElementLookup& lookup_;
+  SourceScene scene_;
   std::size_t bands_;
-  std::span<const double> solved_;
-  ElementField field_;          ///< of the last pass
-  std::vector<double> light_;   ///< N * bands: means of the last pass
-  std::vector<double> before_;  ///< the same, a pass before
-  std::vector<double> added_;   ///< N * bands: to the last pass
+  std::size_t places_;  ///< of a cell
+  HemisphereSet set_;
+  std::uint64_t seed_;
+  std::vector<double> background_;  ///< radiance a band, or empty
+  SourceCells sources_;
+  std::vector<Cell> cells_;    ///< those evaluated
+  std::vector<double> area_;   ///< of these
+  std::vector<float> direct_;  ///< of these * places * bands
+  /// Of these * places * kRaysOfPlace, the first half of a place's rays before the other: sources,
+  /// or what a RayEnd has.
+  std::vector<std::uint32_t> ends_;
+  std::vector<double> correction_;  ///< N * bands: to indirect irradiance; or empty
+  std::vector<float> before_;       ///< values, a pass before
+  std::vector<double> indirect_;    ///< of cells evaluated * bands: mean irradiance
+  double solved_power_ = 0;
+  double power_ = 0;
   double moved_ = 0;
   double gained_ = 0;  ///< in the last pass, W
   double gained_before_ = 0;

@@ -45,9 +45,8 @@ constexpr double kSteepFraction = 0.125;
 constexpr double kDearEdge = 0.005;
 /// The least light to which errors are compared, as a share of the mean.
 constexpr double kLeastLight = 0.1;
-/// To divide most_rays, passes of sources are assumed to take half of it, and the last pass to have
-/// this many vertices for each corner of a root.
-constexpr double kFirstShare = 2;
+/// To divide most_rays, the last pass is assumed to have this many vertices for each corner of a
+/// root.
 constexpr double kTestedShare = 3;
 /// A point where few rays bring most of the light takes this many times the rays of other points:
 /// its spread is kUneven times the tolerance. In rooms the spread is .02 to .05 with 512 rays, and
@@ -57,14 +56,14 @@ constexpr double kUneven = 7;
 /// So does a point for which two halves of its rays say that the mean is off by this many
 /// tolerances: around a small bright patch, such as the ceiling above a lamp.
 constexpr double kApart = 2;
-/// Sources of indirect light: passes end when one moves less of the
-/// reflected power of indirect light than this share, or after so many. Only the first one traces
-/// rays; where they end is kept: 64 MiB, or 16 rays a vertex if that is more.
+/// Sources of indirect light: passes end when one moves less of the reflected power of indirect
+/// light than this share, or after so many.
 constexpr double kSettled = 0.003;
 constexpr int kMostPasses = 12;
+/// Rays of a cell of the sources over those of a vertex; and the most of all cells: where they end
+/// is kept, in 64 MiB, or 16 rays a cell if that is more.
+constexpr double kRaysOfCell = 0.25;
 constexpr double kMostKept = 1u << 24;
-/// A tolerance at which no element is cut.
-constexpr double kUncut = 1e9;
 /// Direct light by rays: its steps are not refined below this.
 constexpr double kAimedTolerance = 0.02;
 
@@ -233,89 +232,79 @@ void LightSources::findSources() {
   for (std::size_t i = 0; i < mesh_.size(); ++i) {
     direct_of_patch_.push_back(brightness(direct, i, bands_));
   }
-  IndirectSources indirect(mesh_, materials_, surface_, lookup_, indirect_);
-  const bool shared = mesh_.clusters.has_value();
-  const int wanted = options_.rays / (shared ? 8 : 4);
-  const double fewer = std::max(1.0, options_.most_rays / kMostKept);
-  const int rays = raysFor(fewer * kFirstShare * corners(false), std::max(16, wanted));
-  KeptEnds ends;
-  const auto pass = [&](int number) {
-    const std::string stage = number == 1
-                                  ? "sources of indirect light"
-                                  : fmt::format("sources of indirect light, pass {}", number);
-    FieldSummary field = onePass(sourcesFrom(indirect), rays, kUncut, stage, false, &ends);
-    if (number == 1) report_.rays += double(field.evaluated) * rays;
-    report_.indirect_vertices += field.evaluated;
-    indirect.take(std::move(field.field));
-  };
-  pass(1);
-  if (!shared) indirect.keepMeans();
-  const double little = kSettled * indirect.reflectedPower(indirect_);
-  for (int k = 2; k <= kMostPasses && (k == 2 || indirect.moved() > little); ++k) pass(k);
+  const SourceScene scene{.mesh = mesh_,
+                          .materials = materials_,
+                          .surface = surface_,
+                          .lookup = lookup_,
+                          .rays = rays_,
+                          .direct = direct_.field,
+                          .irradiance = irradiance_,
+                          .solved = indirect_,
+                          .use = use_,
+                          .emission = report_.direct == DirectLight::hemispheres};
+  IndirectSources indirect(scene, raysOfCell(IndirectSources::countCells(scene)), options_.seed);
+  indirect.trace(progress_);
+  report_.rays += double(indirect.rays());
+  report_.indirect_vertices += indirect.places();
+  const double little = kSettled * indirect.reflectedPower();
+  for (int k = 1; k <= kMostPasses && (k <= 2 || indirect.moved() > little); ++k) {
+    progress_.check();
+    indirect.pass();
+  }
   indirect.extrapolate();
-  sources_ = std::make_unique<SourceMap>(sourcesFrom(indirect));
+  sources_ = std::make_unique<SourceCells>(indirect.takeCells());
 }
 
-SourceMap LightSources::sourcesFrom(const IndirectSources& indirect) const {
-  const bool emission = report_.direct == DirectLight::hemispheres;
-  return {surface_, lookup_, materials_, emission,
-          [&](std::size_t root, Vec2 at, std::span<double> sum) {
-            lookup_.add(direct_.field, root, at, sum);
-            indirect.add(root, at, sum);
-          }};
+std::size_t LightSources::raysOfCell(std::size_t cells) const {
+  const double each =
+      std::min(kMostKept, 0.5 * options_.most_rays) / double(std::max<std::size_t>(1, cells));
+  const double rays = std::min(kRaysOfCell * options_.rays, each);
+  constexpr std::size_t kPlace = IndirectSources::kRaysOfPlace;
+  return kPlace * std::max<std::size_t>(1, std::size_t(rays) / kPlace);
 }
 
 ElementField LightSources::indirectField() {
   const Stopwatch watch;
-  const int rays = raysFor(kTestedShare * corners(true), options_.rays);
+  const double corners = kTestedShare * shownCorners();
+  const int rays = raysFor(corners, options_.rays);
   // With Owen-scrambled points 1,024 rays have an error of about 1%.
   const double noise = 0.01 * std::pow(1024.0 / rays, 0.75);
-  FieldSummary second = onePass(*sources_, rays, std::max(options_.tolerance, kOverNoise * noise),
-                                "indirect light", true, nullptr);
-  take(second);
-  report_.rays += double(second.evaluated) * rays;
-  report_.rays_a_vertex = rays;
-  report_.indirect_vertices += second.evaluated;
-  report_.seconds_indirect += watch.seconds();
-  return std::move(second.field);
-}
-
-/// Vertices at corners of roots that are shown, or of all that are evaluated.
-double LightSources::corners(bool shown_alone) const {
-  if (use_.empty()) return double(surface_.points.size());
-  std::vector<std::uint8_t> counted(surface_.points.size(), 0);
-  for (std::size_t r = 0; r < use_.size(); ++r) {
-    if (use_[r] == RootUse::none || (shown_alone && use_[r] == RootUse::source)) continue;
-    for (const Index v : surface_.vertex[r]) {
-      if (v != kNone) counted[v] = 1;
-    }
-  }
-  return double(std::count(counted.begin(), counted.end(), 1));
-}
-
-FieldSummary LightSources::onePass(const SourceMap& sources, int rays, double tolerance,
-                                   const std::string& stage, bool shown_alone, KeptEnds* kept) {
+  const double tolerance = std::max(options_.tolerance, kOverNoise * noise);
   const HemisphereSet set(std::size_t(rays), options_.seed);
-  // Only for the last pass; so many that all points could take them within a fourth of most_rays.
-  const int more_rays =
-      shown_alone ? raysFor(4 * kTestedShare * corners(true), std::min(kMoreRays * rays, 4096)) : 0;
+  // So many that all points could take them within a fourth of most_rays.
+  const int more_rays = raysFor(4 * corners, std::min(kMoreRays * rays, 4096));
   std::optional<HemisphereSet> more;
-  ReflectedLight light(indirect_surface_, rays_, set, sources, materials_.lights, options_.seed);
-  if (kept != nullptr) light.keepEnds(*kept);
+  ReflectedLight light(indirect_surface_, rays_, set, *sources_, materials_.lights, options_.seed);
   if (more_rays > rays) {
     light.repeat(more.emplace(std::size_t(more_rays), options_.seed), kUneven * options_.tolerance,
                  kApart * options_.tolerance);
   }
   RefinementRule how = rule(tolerance, kIndirectEdge);
   how.least_spread = kTestedSpread * tolerance;
-  if (!shown_alone) how.steep_fraction = 1;
-  how.shown_alone = shown_alone;
+  how.shown_alone = true;
   how.other_light = direct_of_patch_;
   how.patch_light = indirect_;
   FieldSummary field =
-      buildField(mesh_, indirect_surface_, light, how, int(bands_), stage, progress_);
-  report_.rays += double(light.repeated()) * more_rays;
-  return field;
+      buildField(mesh_, indirect_surface_, light, how, int(bands_), "indirect light", progress_);
+  take(field);
+  report_.rays += double(field.evaluated) * rays + double(light.repeated()) * more_rays;
+  report_.rays_a_vertex = rays;
+  report_.indirect_vertices += field.evaluated;
+  report_.seconds_indirect += watch.seconds();
+  return std::move(field.field);
+}
+
+/// Vertices at corners of roots that are shown.
+double LightSources::shownCorners() const {
+  if (use_.empty()) return double(surface_.points.size());
+  std::vector<std::uint8_t> counted(surface_.points.size(), 0);
+  for (std::size_t r = 0; r < use_.size(); ++r) {
+    if (use_[r] != RootUse::shown) continue;
+    for (const Index v : surface_.vertex[r]) {
+      if (v != kNone) counted[v] = 1;
+    }
+  }
+  return double(std::count(counted.begin(), counted.end(), 1));
 }
 
 }  // namespace radiosity

@@ -11,7 +11,7 @@
 #include "elements/field_builder.h"
 #include "elements/indirect_light.h"
 #include "elements/indirect_sources.h"
-#include "elements/source_map.h"
+#include "elements/source_cells.h"
 #include "elements/surface_points.h"
 #include "formfactor/rays/point_rays.h"
 #include "radiosity/elements.h"
@@ -42,7 +42,7 @@ class LightSources {
   const ElementSurface& surface() const { return surface_; }
   const ElementLookup& lookup() const { return lookup_; }
   const PointRays& rays() const { return rays_; }
-  const SourceMap& sources() const { return *sources_; }
+  const SourceCells& sources() const { return *sources_; }
   const ElementField& direct() const { return direct_.field; }
   /// The lights of each leaf of direct(), with `keep_lights`.
   std::span<const std::shared_ptr<const ElementLights>> directLights() const {
@@ -65,11 +65,8 @@ class LightSources {
   void findSources();
   int raysFor(double vertices, int wanted) const;
   void findUses(std::span<const std::uint8_t> wanted);
-  SourceMap sourcesFrom(const IndirectSources& indirect) const;
-  double corners(bool shown_alone) const;
-  /// `kept`: where rays of an earlier pass like this one end; null: they are traced, and not kept.
-  FieldSummary onePass(const SourceMap& sources, int rays, double tolerance,
-                       const std::string& stage, bool shown_alone, KeptEnds* kept);
+  std::size_t raysOfCell(std::size_t cells) const;
+  double shownCorners() const;
 
   const PatchMesh& mesh_;
   const PatchMaterials& materials_;
@@ -91,7 +88,7 @@ class LightSources {
   FieldSummary direct_;
   std::vector<double> direct_of_patch_;  ///< N, over all bands
   std::vector<double> indirect_;
-  std::unique_ptr<SourceMap> sources_;
+  std::unique_ptr<SourceCells> sources_;
   ElementReport report_;
 };
 

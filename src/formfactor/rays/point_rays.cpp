@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <numeric>
 
 #include "base/geometry/plane_frame.h"
@@ -18,6 +19,9 @@ namespace {
 constexpr float kShort = 1e-5F;
 constexpr int kDiscCells =
     8;  ///< along each side of the disc's square: of 1,024 rays a cell has one packet
+
+/// Sets of many rays.
+constexpr std::size_t kFewestSets = 16;
 
 /// Cells row by row, to and fro, so that neighbours in the order are neighbours on the disc.
 int discCellOf(float x, float y) {
@@ -47,7 +51,8 @@ void passEnds(const RTCFilterFunctionNArguments* hits) {
 
 }  // namespace
 
-HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed) : rays_(rays) {
+HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed)
+    : rays_(rays), sets_(std::max(kFewestSets, kMostPoints / rays)) {
   const SobolPoints sobol;
   std::array<std::vector<float>, kDimensions> points;
   PointArrays out{};
@@ -58,7 +63,7 @@ HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed) : rays_(rays)
   std::vector<float> u(rays);
   std::vector<float> v(rays);
   std::vector<std::size_t> order(rays);
-  for (std::size_t set = 0; set < kSets; ++set) {
+  for (std::size_t set = 0; set < sets_; ++set) {
     sobol.points(0, rays, seed + set, out);
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -71,6 +76,17 @@ HemisphereSet::HemisphereSet(std::size_t rays, std::uint64_t seed) : rays_(rays)
       first_.push_back(k < rays / 2 ? 1 : 0);
     }
   }
+}
+
+HemisphereSet::Turn HemisphereSet::turnAt(const Vec3& place, std::uint64_t seed) const {
+  Hash hash;
+  hash.bytes(&place, sizeof place);
+  hash.bytes(&seed, sizeof seed);
+  std::uint64_t bits = hash.value();
+  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ull;
+  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebull;
+  bits ^= bits >> 31;
+  return {bits % sets_, 2 * std::numbers::pi * double(bits >> 11) * 0x1p-53};
 }
 
 PointRays::PointRays(const PatchMesh& mesh)

@@ -33,12 +33,19 @@ struct RaySource {
 /// The first 2^k points of some scrambled Sobol sequences, raised from the disc to
 /// cosine-distributed directions (Malley's method, as RayCaster) and sorted so that packets of 16
 /// leave in nearly one direction. A point takes one of the sets and turns it about its normal.
+/// There are the more sets the fewer rays each has: all points share their heights above the
+/// surface.
 class HemisphereSet {
  public:
   /// `rays`: a power of two, 16 to kMostPoints.
   HemisphereSet(std::size_t rays, std::uint64_t seed);
   std::size_t rays() const { return rays_; }
-  static constexpr std::size_t kSets = 16;
+  /// The set that a place takes, and its turn about the normal, radians.
+  struct Turn {
+    std::size_t set;
+    double angle;
+  };
+  Turn turnAt(const Vec3& place, std::uint64_t seed) const;
   /// Direction k of a set about the axis z. The directions with isFirst(k) are the first half of
   /// the sequence: a set of its own, as is the rest.
   const glm::vec3& direction(std::size_t set, std::size_t k) const {
@@ -48,6 +55,7 @@ class HemisphereSet {
 
  private:
   std::size_t rays_;
+  std::size_t sets_;
   std::vector<glm::vec3> directions_;
   std::vector<std::uint8_t> first_;
 };

@@ -1,4 +1,4 @@
-#include "elements/source_map.h"
+#include "elements/source_cells.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,11 @@
 
 namespace radiosity {
 
-void SourceMap::layOut() {
+SourceCells::SourceCells(const ElementSurface& surface, const ElementLookup& lookup, int bands)
+    : surface_(surface),
+      lookup_(lookup),
+      bands_(std::size_t(bands)),
+      far_(kCellEdge * surface.diagonal) {
   const ElementRoots& roots = surface_.roots;
   side_.resize(roots.size());
   first_.assign(1, 0);
@@ -22,9 +26,11 @@ void SourceMap::layOut() {
     side_[r] = std::uint8_t(std::clamp(std::ceil(cells), 1.0, double(kMostSide)));
     first_.push_back(first_.back() + std::size_t(side_[r]) * side_[r]);
   }
+  values_.assign(2 * size() * bands_, 0.0F);
 }
 
-std::optional<std::uint32_t> SourceMap::cellAt(std::size_t patch, const Vec3& at) const {
+std::optional<std::uint32_t> SourceCells::sourceAt(std::size_t patch, const Vec3& at,
+                                                   const Vec3& from) const {
   const ElementRoots& roots = surface_.roots;
   if (roots.of_patch[patch] == roots.of_patch[patch + 1]) return std::nullopt;
   const std::size_t root = lookup_.rootAt(patch, at);
@@ -35,8 +41,11 @@ std::optional<std::uint32_t> SourceMap::cellAt(std::size_t patch, const Vec3& at
     const Vec2 place = lookup_.place(root, at);
     x = std::min(int(place.x * n), n - 1);
     y = std::min(int(place.y * n), n - 1);
+    // Rounding may put a place beyond a triangle's longest side.
+    if (roots.cornerCount(root) == 3) y = std::min(y, n - 1 - x);
   }
-  return std::uint32_t(first_[root] + std::size_t(y * n + x));
+  const bool near = glm::distance(at, from) < far_;
+  return std::uint32_t(2 * (first_[root] + std::size_t(y * n + x)) + (near ? 1 : 0));
 }
 
 }  // namespace radiosity
