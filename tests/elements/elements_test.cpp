@@ -392,7 +392,7 @@ Scene roomWithoutBacks() {
 TEST(Elements, EnergyIsThatOfThePatches) {
   double of_patches = 0;
   const auto summed = [&](const PatchMesh& mesh, const PatchMaterials& with) {
-    const std::vector<double> irradiance = solved(mesh, with);
+    std::vector<double> irradiance = solved(mesh, with);
     of_patches = 0;
     for (std::size_t i = 0; i < mesh.size(); ++i) of_patches += mesh.area[i] * irradiance[3 * i];
     return irradiance;

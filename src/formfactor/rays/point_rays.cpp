@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/geometry/plane_frame.h"
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "formfactor/rays/ray_kernels.h"
 #include "formfactor/rays/sobol.h"
