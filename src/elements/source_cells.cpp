@@ -7,10 +7,15 @@
 namespace radiosity {
 
 SourceCells::SourceCells(const ElementSurface& surface, const ElementLookup& lookup, int bands)
-    : surface_(surface),
-      lookup_(lookup),
-      bands_(std::size_t(bands)),
-      far_(kCellEdge * surface.diagonal) {
+    : surface_(surface), lookup_(lookup), bands_(std::size_t(bands)) {
+  constexpr double kLonger = 1.4;
+  layOut(kCellEdge * surface.diagonal);
+  while (size() > kMostCells + surface.roots.size()) layOut(kLonger * far_);
+  values_.assign(2 * size() * bands_, 0.0F);
+}
+
+void SourceCells::layOut(double edge) {
+  far_ = edge;
   const ElementRoots& roots = surface_.roots;
   side_.resize(roots.size());
   first_.assign(1, 0);
@@ -22,11 +27,10 @@ SourceCells::SourceCells(const ElementSurface& surface, const ElementLookup& loo
           std::max(longest, glm::distance(surface_.points[surface_.vertex[r][k]].place,
                                           surface_.points[surface_.vertex[r][(k + 1) % n]].place));
     }
-    const double cells = surface_.diagonal > 0 ? longest / (kCellEdge * surface_.diagonal) : 1;
+    const double cells = edge > 0 ? longest / edge : 1;
     side_[r] = std::uint8_t(std::clamp(std::ceil(cells), 1.0, double(kMostSide)));
     first_.push_back(first_.back() + std::size_t(side_[r]) * side_[r]);
   }
-  values_.assign(2 * size() * bands_, 0.0F);
 }
 
 std::optional<std::uint32_t> SourceCells::sourceAt(std::size_t patch, const Vec3& at,

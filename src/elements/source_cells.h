@@ -25,6 +25,8 @@ class SourceCells {
  public:
   static constexpr double kCellEdge = 0.01;
   static constexpr int kMostSide = 16;
+  /// Of all roots, besides one each: cells are made longer until they are no more.
+  static constexpr std::size_t kMostCells = std::size_t(1) << 20;
 
   SourceCells(const ElementSurface& surface, const ElementLookup& lookup, int bands);
 
@@ -49,10 +51,12 @@ class SourceCells {
   std::vector<float>& values() { return values_; }
 
  private:
+  void layOut(double edge);
+
   const ElementSurface& surface_;
   const ElementLookup& lookup_;
   std::size_t bands_;
-  double far_;                      ///< metres
+  double far_ = 0;                  ///< metres: the edge of cells
   std::vector<std::uint8_t> side_;  ///< R
   std::vector<std::size_t> first_;  ///< R + 1
   std::vector<float> values_;
