@@ -95,10 +95,10 @@ struct IndirectSources::Light {
   std::size_t places = 0;        ///< without those behind a surface
 };
 
-IndirectSources::IndirectSources(const SourceScene& scene, std::size_t rays, std::uint64_t seed)
+IndirectSources::IndirectSources(const SourceScene& scene, double rays, double most_rays,
+                                 std::uint64_t seed)
     : scene_(scene),
       bands_(std::size_t(scene.materials.bands)),
-      places_(rays / kRaysOfPlace),
       set_(kRaysOfPlace, seed),
       seed_(seed),
       background_(background(scene.materials.lights, scene.materials.bands)),
@@ -114,20 +114,12 @@ IndirectSources::IndirectSources(const SourceScene& scene, std::size_t rays, std
     }
   }
   for (const Cell& cell : cells_) area_.push_back(areaOf(cell));
+  const double of_cell =
+      std::min(rays, most_rays / double(std::max<std::size_t>(1, cells_.size())));
+  places_ = std::max<std::size_t>(1, std::size_t(of_cell) / kRaysOfPlace);
   direct_.resize(places() * bands_);
   ends_.resize(places() * kRaysOfPlace);
   indirect_.resize(cells_.size() * bands_);
-}
-
-std::size_t IndirectSources::countCells(const SourceScene& scene) {
-  const SourceCells cells(scene.surface, scene.lookup, scene.materials.bands);
-  std::size_t count = 0;
-  for (std::size_t r = 0; r < scene.surface.roots.size(); ++r) {
-    if (!scene.use.empty() && scene.use[r] == RootUse::none) continue;
-    const auto n = std::size_t(cells.side(r));
-    count += scene.surface.roots.cornerCount(r) == 4 ? n * n : n * (n + 1) / 2;
-  }
-  return count;
 }
 
 double IndirectSources::areaOf(const Cell& cell) const {
@@ -191,8 +183,7 @@ void IndirectSources::findCorrections() {
     for (std::size_t at = 2 * sources_.first(r) * bands_; at < 2 * sources_.first(r + 1) * bands_;
          ++at) {
       const std::size_t k = patch_of[r] * bands_ + at % bands_;
-      values[at] = float(scene_.materials.reflectance[k] * scene_.irradiance[k] +
-                         (scene_.emission ? scene_.materials.emission[k] : 0.0));
+      values[at] = float(scene_.materials.reflectance[k] * scene_.irradiance[k] + emitted(k));
     }
   }
   std::vector<float> found = values;
@@ -228,8 +219,7 @@ void IndirectSources::begin() {
       const double rho = scene_.materials.reflectance[k];
       indirect_[e * bands_ + b] = scene_.solved[k];
       solved_power_ += area_[e] * rho * scene_.solved[k];
-      const double light = rho * (direct / double(places_) + scene_.solved[k]) +
-                           (scene_.emission ? scene_.materials.emission[k] : 0.0);
+      const double light = rho * (direct / double(places_) + scene_.solved[k]) + emitted(k);
       const std::size_t at = 2 * slotOf(cells_[e]) * bands_ + b;
       values[at] = values[at + bands_] = float(light);
     }
@@ -248,8 +238,7 @@ void IndirectSources::keepOthers(std::vector<float>& values) const {
     for (std::size_t at = 2 * sources_.first(r) * bands_; at < 2 * sources_.first(r + 1) * bands_;
          ++at) {
       const std::size_t k = patch * bands_ + at % bands_;
-      values[at] = float(ratio * scene_.materials.reflectance[k] * scene_.solved[k] +
-                         (scene_.emission ? scene_.materials.emission[k] : 0.0));
+      values[at] = float(ratio * scene_.materials.reflectance[k] * scene_.solved[k] + emitted(k));
     }
   }
 }
@@ -310,15 +299,14 @@ double IndirectSources::lightCell(std::size_t e, std::vector<float>& values, dou
   for (std::size_t b = 0; b < bands_; ++b) {
     const std::size_t k = patch * bands_ + b;
     const double rho = scene_.materials.reflectance[k];
-    const double emitted = scene_.emission ? scene_.materials.emission[k] : 0.0;
     const double more = correction_.empty() ? 0.0 : correction_[k];
     const double mean = light.all[b] / places;
     const double far = light.open > 0 ? light.far[b] / light.open : mean;
     const double near =
         light.open < places ? (light.all[b] - light.far[b]) / (places - light.open) : mean;
     const std::size_t at = 2 * slotOf(cells_[e]) * bands_ + b;
-    values[at] = float(rho * std::max(0.0, far + more) + emitted);
-    values[at + bands_] = float(rho * std::max(0.0, near + more) + emitted);
+    values[at] = float(rho * std::max(0.0, far + more) + emitted(k));
+    values[at + bands_] = float(rho * std::max(0.0, near + more) + emitted(k));
     const double indirect = light.indirect[b] / places + more;
     const double change = area_[e] * rho * (indirect - indirect_[e * bands_ + b]);
     indirect_[e * bands_ + b] = indirect;

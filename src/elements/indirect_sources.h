@@ -46,12 +46,10 @@ struct SourceScene {
 /// light of the solution, but for the share that all others gain.
 class IndirectSources {
  public:
-  /// `rays`: of a cell, a multiple of kRaysOfPlace.
-  IndirectSources(const SourceScene& scene, std::size_t rays, std::uint64_t seed);
+  /// `rays`: of a cell, `most_rays`: of all, but for one place a cell.
+  IndirectSources(const SourceScene& scene, double rays, double most_rays, std::uint64_t seed);
   /// Rays that leave one place: the fewest of a HemisphereSet.
   static constexpr std::size_t kRaysOfPlace = 16;
-  /// Cells of the roots that are evaluated.
-  static std::size_t countCells(const SourceScene& scene);
 
   /// Finds where rays end. Throws Cancelled.
   void trace(Progress& progress);
@@ -79,6 +77,10 @@ class IndirectSources {
   bool isEvaluated(std::size_t root) const {
     return scene_.use.empty() || scene_.use[root] != RootUse::none;
   }
+  /// What surfaces emit with the indirect light, k = patch * bands + band.
+  double emitted(std::size_t k) const {
+    return scene_.emission ? scene_.materials.emission[k] : 0.0;
+  }
   Vec2 placeOf(const Cell& cell, std::size_t k) const;
   double areaOf(const Cell& cell) const;
   std::size_t slotOf(const Cell& cell) const {
@@ -93,7 +95,7 @@ class IndirectSources {
 
   SourceScene scene_;
   std::size_t bands_;
-  std::size_t places_;  ///< of a cell
+  std::size_t places_ = 1;  ///< of a cell
   HemisphereSet set_;
   std::uint64_t seed_;
   std::vector<double> background_;  ///< radiance a band, or empty

@@ -242,7 +242,8 @@ void LightSources::findSources() {
                           .solved = indirect_,
                           .use = use_,
                           .emission = report_.direct == DirectLight::hemispheres};
-  IndirectSources indirect(scene, raysOfCell(IndirectSources::countCells(scene)), options_.seed);
+  IndirectSources indirect(scene, kRaysOfCell * options_.rays,
+                           std::min(kMostKept, 0.5 * options_.most_rays), options_.seed);
   indirect.trace(progress_);
   report_.rays += double(indirect.rays());
   report_.indirect_vertices += indirect.places();
@@ -253,14 +254,6 @@ void LightSources::findSources() {
   }
   indirect.extrapolate();
   sources_ = std::make_unique<SourceCells>(indirect.takeCells());
-}
-
-std::size_t LightSources::raysOfCell(std::size_t cells) const {
-  const double each =
-      std::min(kMostKept, 0.5 * options_.most_rays) / double(std::max<std::size_t>(1, cells));
-  const double rays = std::min(kRaysOfCell * options_.rays, each);
-  constexpr std::size_t kPlace = IndirectSources::kRaysOfPlace;
-  return kPlace * std::max<std::size_t>(1, std::size_t(rays) / kPlace);
 }
 
 ElementField LightSources::indirectField() {

@@ -65,7 +65,6 @@ class LightSources {
   void findSources();
   int raysFor(double vertices, int wanted) const;
   void findUses(std::span<const std::uint8_t> wanted);
-  std::size_t raysOfCell(std::size_t cells) const;
   double shownCorners() const;
 
   const PatchMesh& mesh_;

@@ -162,15 +162,15 @@ double ErrorSums::raise() const { return std::max(1.0, kRowAlike * recheckRatio(
 
 double ErrorSums::figures(std::span<const double> area, double closed_form,
                           std::span<double> figure) const {
-  const double raised = raise() * raise();
+  const double raised = raise();
   const double closed = kRowClosedForms * closed_form;
   double errors = 0;
   for (std::size_t i = 0; i < figure.size(); ++i) {
     const double closed_forms = closed * closed * squares_[i];
     PairErrors row = occluded_[i];
-    errors += (closed_forms + raised * row.figure()) / area[i];
+    errors += (closed_forms + raised * raised * row.figure()) / area[i];
     row += black_backs_[i];
-    figure[i] = std::sqrt(closed_forms + raised * row.figure()) / area[i];
+    figure[i] = std::sqrt(closed_forms + raised * raised * row.figure()) / area[i];
   }
   const double squares = weightedSquares(area);
   return squares > 0 ? std::sqrt(errors / squares) : 0.0;
