@@ -56,7 +56,7 @@ inline constexpr std::array kMethods{
                  .summary = "area to area, hidden parts clipped off",
                  .options = {"tolerance", "closure"},
                  .tolerance = 1e-3,
-                 .imbalance = 0.01,
+                 .imbalance = 0.005,
                  .cure =
                      [] {
                        return "give " + spelled("closure", "enforce") + ", or a smaller " +
@@ -68,7 +68,7 @@ inline constexpr std::array kMethods{
                  .options = {"tolerance", "closure", "seed"},
                  .tolerance = 1e-2,
                  .counts_unknowns = true,
-                 .imbalance = 0.01,
+                 .imbalance = 0.005,
                  .cure =
                      [] {
                        return "give a smaller " + spelled("tolerance") + ", or " +

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -114,6 +115,32 @@ TEST(ExactEstimate, ASampleKeepsToItsBound) {
   }
   EXPECT_GT(stopped, 0u);
   EXPECT_LT(tests, sample.most_tests + beyond);
+}
+
+/// What is settled before a descent is easy: a sample without any other pairs knows nothing of them.
+TEST(ExactEstimate, ASampleGoesOnUntilADescentSettlesPairs) {
+  const PatchMesh mesh = meshNamed("furnished-room", 600);
+  Progress silent;
+  const ExactScene scene(mesh, silent);
+  VisibilitySample sample;
+  sample.most_tests = 1;
+  const std::size_t beyond = 4 * scene.occluders.occluders.size();
+  std::array<std::size_t, 2> none{};  // ranges without any settled in a descent
+  for (const bool goes_on : {false, true}) {
+    sample.limit_of_tests = goes_on ? 20'000 : 0;
+    for (std::size_t t = 0; t < scene.tasks.size(); ++t) {
+      for (const ElementRange& range : scene.tasks[t]) {
+        RecordedPairs sampled;
+        VisibilityCounts counts;
+        const VisibilityOfFacets of_facets =
+            scene.visibility.classifySome(range, sample, sampled, counts);
+        EXPECT_LT(counts.shaft_tests, 20'000 + beyond);
+        if (of_facets.left > 0 && counts.settled() == of_facets.settled.settled()) ++none[goes_on];
+      }
+    }
+  }
+  EXPECT_GT(none[0], 10u);
+  EXPECT_EQ(none[1], 0u);
 }
 
 TEST(ExactEstimate, TighterTolerancesTakeLonger) {

@@ -34,9 +34,10 @@ namespace {
 /// since these rows are a small part of the work.
 constexpr std::size_t kLeadingSteps = 24;
 constexpr double kLeadingClipSeconds = 0.06;
-/// No more than one occluded pair in this many is evaluated again, where there are few, too: it
-/// takes some times as long, and past a forest of columns seconds.
-constexpr std::size_t kRecheckMost = 16;
+/// Occluded pairs that are all evaluated again; of more, no more than these or than one in
+/// kRecheckMost: it takes some times as long, and past a forest of columns seconds.
+constexpr double kRecheckAll = 256;
+constexpr double kRecheckMost = 16;
 
 std::vector<std::uint8_t> patchesOf(const PatchMesh& mesh, std::span<const Index> wanted) {
   std::vector<std::uint8_t> flags(mesh.size(), 0);
@@ -145,7 +146,9 @@ double LeadingRows::work(RowSample& sample) {
   const double tolerance = options_.toleranceOf(FormFactorMethod::exact);
   foreseeCost(scene_, tolerance, sample);
   const ExactEstimate estimate = estimateExact(scene_, sample, options_);
-  recheck_every_ = std::max(kRecheckMost, recheckEvery(estimate.occluded_pairs, tolerance));
+  const double pairs = estimate.occluded_pairs;
+  recheck_every_ = std::max(recheckEvery(pairs, tolerance),
+                            std::size_t(std::min(kRecheckMost, pairs / kRecheckAll)));
   return estimate.work;
 }
 

@@ -179,6 +179,7 @@ void RowAssembly::evaluateOccluded(RowSums& sums) {
   context_.occluded.evaluate(pairs, pairs_.occluder_list, occluded_, sums.occluded,
                              &context_.progress);
   replaceUncertain();
+  recheck(sums);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto& [row, column, begin, end, unoccluded] = pairs[k];
     panel_[place(row, column)] = occluded_[k].exchange;
@@ -191,7 +192,6 @@ void RowAssembly::evaluateOccluded(RowSums& sums) {
       sums.error.addBlackBack(a, occluded_[k].error);
     }
   }
-  recheck(sums);
 }
 
 Index RowAssembly::receiverOf(const OccludedPair& pair) const {
@@ -254,7 +254,9 @@ std::vector<OccludedExchange> RowAssembly::strictly(std::span<const std::size_t>
   return strict;
 }
 
-void RowAssembly::recheck(RowSums& sums) const {
+/// Pairs that are evaluated again keep the stricter value, with the error stated before: that is
+/// what the others of their rows are judged by.
+void RowAssembly::recheck(RowSums& sums) {
   std::vector<std::size_t> which;
   for (std::size_t k = 0; k < occluded_.size(); ++k) {
     const OccludedPair& pair = pairs_.occluded_pairs[k];
@@ -265,10 +267,11 @@ void RowAssembly::recheck(RowSums& sums) const {
   }
   const std::vector<OccludedExchange> strict = strictly(which);
   for (std::size_t k = 0; k < which.size(); ++k) {
-    const OccludedExchange& found = occluded_[which[k]];
+    OccludedExchange& found = occluded_[which[k]];
     const OccludedPair& pair = pairs_.occluded_pairs[which[k]];
     sums.error.addRecheck(context_.order.rank[pair.row], context_.order.rank[pair.column],
                           found.exchange - strict[k].exchange, found.error);
+    found.exchange = strict[k].exchange;
   }
 }
 

@@ -106,7 +106,7 @@ class RowAssembly {
   std::vector<std::size_t> uncertainPairs() const;
   /// The unknown that gets light by a pair; kNone if neither end emits.
   Index receiverOf(const OccludedPair& pair) const;
-  void recheck(RowSums& sums) const;
+  void recheck(RowSums& sums);
   std::vector<OccludedExchange> strictly(std::span<const std::size_t> which) const;
   void storeUncertain(ElementRange rows);
   void storeUncertainRow(std::size_t rank, std::span<Uncertain> entries);

@@ -49,6 +49,7 @@ void VisibilityDescent::run(Index facet, Index cluster) {
     left = sample_.facet_stride - 1;
   }
   noteFacets(before);
+  settled_before_ = counts_.settled();
   descend(cluster, 0, 0, items_.size());
 }
 
@@ -138,7 +139,7 @@ void VisibilityDescent::descend(Index row, std::size_t depth, std::size_t first_
 /// Settles an item by the horizon, then by candidates. Columns larger than the rows are split,
 /// others left to the row's children.
 void VisibilityDescent::settle(Index row, std::size_t depth, Item item) {
-  if (enough()) return;
+  if (enough() && hasSettledSome()) return;
   sink_.poll();
   const Cluster& rows = elements_.clusters[row];
   const Cluster& columns = elements_.clusters[item.cluster];

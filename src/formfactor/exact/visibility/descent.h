@@ -40,6 +40,10 @@ class VisibilityDescent {
   };
 
   bool enough() const { return counts_.shaft_tests >= sample_.most_tests; }
+  bool hasSettledSome() const {
+    return counts_.settled() >= settled_before_ + VisibilitySample::kLeastSettled ||
+           counts_.shaft_tests >= sample_.limit_of_tests;
+  }
   void noteFacets(const VisibilityCounts& before);
   void addFacet(Index facet);
   void descend(Index row, std::size_t depth, std::size_t first_item, std::size_t end_item);
@@ -65,6 +69,7 @@ class VisibilityDescent {
   VisibilityCounts& counts_;
   VisibilitySample sample_;  ///< most_tests: of all in counts_, earlier ones too
   VisibilityOfFacets of_facets_;
+  std::size_t settled_before_ = 0;  ///< before the descent
   Index facet_ = 0;
   Index top_ = 0;
   std::vector<Item> items_;                        ///< a stack; each depth's at the end

@@ -38,7 +38,10 @@ struct VisibilitySample {
   FacetSize size = FacetSize::any;
   std::size_t facet_stride = 1;  ///< over the open facets of this size after theirs,
   std::size_t first_facet = 0;   ///< from this one on
-  std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops
+  std::size_t most_tests = std::numeric_limits<std::size_t>::max();  ///< then it stops,
+  /// or at this later one, until it has settled kLeastSettled of the pairs left to the descent.
+  std::size_t limit_of_tests = 0;
+  static constexpr std::size_t kLeastSettled = 64;
 };
 
 /// The result of the first step of a sample, which looks at facets as a whole.
