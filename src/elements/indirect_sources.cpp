@@ -130,8 +130,10 @@ double IndirectSources::areaOf(const Cell& cell) const {
   return (cell.x + cell.y == n - 1 ? 1 : 2) * area / (n * n);
 }
 
+/// Neighbouring cells go on with one sequence: all of them at the same places would miss the mean
+/// of light that falls from one side to the other.
 Vec2 IndirectSources::placeOf(const Cell& cell, std::size_t k) const {
-  Vec2 in_cell = evenPlace(k);
+  Vec2 in_cell = evenPlace(slotOf(cell) * places_ + k);
   const int n = sources_.side(cell.root);
   const bool halved = scene_.surface.roots.cornerCount(cell.root) == 3 && cell.x + cell.y == n - 1;
   if (halved && in_cell.x + in_cell.y > 1) in_cell = Vec2(1.0) - in_cell;

@@ -39,7 +39,7 @@ constexpr double kOverNoise = 3;
 /// An element is tested if its corners differ by this many tolerances.
 constexpr double kTestedSpread = 2;
 /// If corners differ by more than this share, edges may be shorter by the factor below.
-constexpr double kSteepSpread = 0.5;
+constexpr double kSteepSpread = 0.2;
 constexpr double kSteepFraction = 0.125;
 /// Direct light by rays is not refined below this.
 constexpr double kDearEdge = 0.005;
@@ -58,7 +58,7 @@ constexpr double kUneven = 7;
 constexpr double kApart = 2;
 /// Sources of indirect light: passes end when one moves less of the reflected power of indirect
 /// light than this share, or after so many.
-constexpr double kSettled = 0.003;
+constexpr double kSettled = 0.001;
 constexpr int kMostPasses = 12;
 /// Rays of a cell of the sources over those of a vertex; and the most of all cells: where they end
 /// is kept, in 64 MiB, or 16 rays a cell if that is more.

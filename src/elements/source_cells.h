@@ -23,8 +23,8 @@ namespace radiosity {
 /// power is lost or gained.
 class SourceCells {
  public:
-  static constexpr double kCellEdge = 0.01;
-  static constexpr int kMostSide = 16;
+  static constexpr double kCellEdge = 0.005;
+  static constexpr int kMostSide = 32;
   /// Of all roots, besides one each: cells are made longer until they are no more.
   static constexpr std::size_t kMostCells = std::size_t(1) << 20;
 

@@ -27,7 +27,7 @@ struct Neighbours {
     for (const InputFace& face : input.faces) {
       Box3 box;
       for (const Index v : face.loop) box.add(input.points[v]);
-      boxes.push_back(box.grown(0.5 * face.coincidence));
+      boxes.push_back(box.grown(face.coincidence));
     }
     const auto pairs = overlappingPairs(boxes);
     for (const auto& [a, b] : pairs) {
@@ -98,7 +98,7 @@ class Grower {
 
   bool within(const Plane& plane, Index f) const {
     const auto& loop = input_.faces[f].loop;
-    const double most = 0.5 * std::min(plane.coincidence, input_.faces[f].coincidence);
+    const double most = std::min(plane.coincidence, input_.faces[f].coincidence);
     return std::all_of(loop.begin(), loop.end(),
                        [&](Index v) { return std::abs(plane.distance(input_.points[v])) <= most; });
   }

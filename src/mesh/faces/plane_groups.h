@@ -19,9 +19,11 @@ struct Plane {
 };
 
 /// Puts every face into exactly one plane, together with the coplanar faces connected to it (boxes
-/// that overlap, from face to face). Coplanar: every vertex of every face lies within half the
-/// coincidence of the plane, so a plane is a slab one coincidence thick and cannot drift. Faces
-/// with the handling `alone` have a plane each.
+/// that overlap, from face to face). Coplanar: every vertex of every face lies within the
+/// coincidence of the plane, so a plane cannot drift. (Nor is one seen beside another that it
+/// touches: visibility takes what is nearer than that for touching. With half of it, noise of half
+/// a coincidence left lamps in front of ceilings that were seen through them.) Faces with the
+/// handling `alone` have a plane each.
 std::vector<Plane> groupByPlane(const InputFaces& input);
 
 }  // namespace radiosity

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <set>
 
 #include "base/geometry/box_tree.h"
 #include "visibility/occluders/clip.h"
@@ -31,6 +32,28 @@ void attach(Occluder& solid, Index face, Index facet, const ElementSet& elements
     hidden_facets[facet] = 1;
 }
 
+/// Adds facets near a solid that has all of itself behind them, to where a plane may be off by the
+/// coincidence on either side: it hides nothing from them. (Two triangles of a box's side that noise
+/// has turned, and another box across the edge between them: one was part of the solid, the other
+/// lay half within it by 1.07 coincidences, and half of it saw nothing.)
+void addFacetsInFront(Occluder& solid, const OccluderPolygons& all,
+                      const std::vector<std::vector<Index>>& facets, const ElementSet& elements) {
+  const double behind = 2 * all.coincidence;
+  const std::set<Index> known(solid.facets.begin(), solid.facets.end());
+  all.tree.query(boxAround(solid, behind), [&](Index p) {
+    for (const Index f : facets[all.polygons[p].source]) {
+      const Facet& facet = elements.facets[f];
+      const auto is_behind = [&](const Vec3& corner) {
+        return glm::dot(facet.normal, corner) - facet.offset <= behind;
+      };
+      if (!known.contains(f) && std::ranges::all_of(solid.corners, is_behind)) {
+        solid.facets.push_back(f);
+      }
+    }
+    return true;
+  });
+}
+
 /// Boxes of the solids, to find those at a polygon.
 BoxTree placesOf(const std::vector<Occluder>& solids, double margin) {
   std::vector<Box3> boxes;
@@ -56,6 +79,7 @@ OccluderSet::OccluderSet(const PatchMesh& mesh, const ElementSet& elements, Prog
       const Index source = all.polygons[on.polygon].source;
       for (const Index f : facets[source]) attach(solid.body, on.face, f, elements, hidden_facets);
     }
+    addFacetsInFront(solid.body, all, facets, elements);
     occluders.push_back(std::move(solid.body));
   }
   solids = occluders.size();

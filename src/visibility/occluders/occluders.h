@@ -28,8 +28,9 @@ struct Occluder {
   Vec3 centre{0.0};  ///< bounding sphere
   double radius = 0;
   bool flat = false;
-  std::vector<Index>
-      facets;  ///< facets of the ElementSet that lie on its planes (sides of its polygons); sorted
+  /// Facets of the ElementSet that it hides nothing from: they lie on its planes (sides of its
+  /// polygons), or near it and in front of all of it; sorted.
+  std::vector<Index> facets;
 };
 
 /// Together the occluders block the same as the polygons, between any two points that elements see
