@@ -58,8 +58,8 @@ constexpr double kUneven = 7;
 constexpr double kApart = 2;
 /// Sources of indirect light: passes end when one moves less of the reflected power of indirect
 /// light than this share, or after so many.
-constexpr double kSettled = 0.001;
-constexpr int kMostPasses = 12;
+constexpr double kSettled = 0.0003;
+constexpr int kMostPasses = 24;
 /// Rays of a cell of the sources over those of a vertex; and the most of all cells: where they end
 /// is kept, in 64 MiB, or 16 rays a cell if that is more.
 constexpr double kRaysOfCell = 0.25;

@@ -484,12 +484,13 @@ Scene noisyRoom(double noise, unsigned seed) {
 
 TEST(ExactStress, NoiseOnCornersLeavesNoPatchOfRounding) {
   for (const double noise : {3e-8, 1e-7, 1.5e-7, 1e-6}) {
-    for (unsigned seed = 1; seed <= 2; ++seed) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
       SCOPED_TRACE(std::to_string(noise * 1e9) + " nm, seed " + std::to_string(seed));
       MeshOptions options;
       options.patches = 80;
       Progress silent;
-      const PatchMesh mesh = meshScene(noisyRoom(noise, seed), options, silent).mesh;
+      PatchMesh mesh = meshScene(noisyRoom(noise, seed), options, silent).mesh;
+      mesh.clusters.reset();  // a row for each patch
       const FormFactors f = compute(mesh, FormFactorMethod::exact);
       double area = 0;
       double seen = 0;
@@ -497,8 +498,9 @@ TEST(ExactStress, NoiseOnCornersLeavesNoPatchOfRounding) {
         pairsOf(*f.matrix).forRow(i, [&](Index, double value) { ASSERT_GE(value, 0.0) << i; });
         // Without noise the largest is .004, and of strips as thin as a few coincidences .025. A
         // patch as thin as rounding has .1 to 2. (Gaps wider than four coincidences are strips of
-        // their own, with errors of their own.)
-        if (noise < 2e-7) {
+        // their own, with errors of their own: with noise of 1.5 coincidences 4 rooms of 16 have
+        // one.)
+        if (noise < 1.2e-7) {
           EXPECT_LT(f.error[i], 0.05) << i;
         }
         if (mesh.surface_names[mesh.surface[i]] != "block/block") continue;

@@ -166,16 +166,16 @@ void OccludedKernel::evaluate(const Batch& batch) const {
 
 void OccludedKernel::evaluateAgain(const Batch& batch) const {
   std::vector<std::size_t> doubtful;
-  const auto isUnresolved = [&](std::size_t k) {
+  const auto missedAllowed = [&](std::size_t k) {
     const double allowed = allowedError(elements_, batch.pairs[k], batch.tolerance);
-    return batch.out[k].unresolved >
-           std::clamp(kMissedOfAllowed * allowed, kPairMissed, kPairResolved);
+    return std::max(kPairMissed, kMissedOfAllowed * allowed);
   };
   const auto find = [&] {
     doubtful.clear();
     for (std::size_t k = 0; k < batch.pairs.size(); ++k) {
       const OccludedExchange& x = batch.out[k];
-      if (isUnresolved(k) || x.cut_short || x.uncertain) doubtful.push_back(k);
+      const bool resolved = x.unresolved <= std::min(kPairResolved, missedAllowed(k));
+      if (!resolved || x.cut_short || x.uncertain) doubtful.push_back(k);
     }
   };
   find();
@@ -191,11 +191,10 @@ void OccludedKernel::evaluateAgain(const Batch& batch) const {
   std::vector<std::size_t> apart;
   for (std::size_t m = 0; m < doubtful.size(); ++m) {
     OccludedExchange& x = batch.out[doubtful[m]];
-    if (disagree(x, others[m], batch.pairs[doubtful[m]].unoccluded)) apart.push_back(doubtful[m]);
+    const std::size_t k = doubtful[m];
+    const bool agree = !disagree(x, others[m], batch.pairs[k].unoccluded);
     x = betterOfBoth(x, others[m]);
-    if (isUnresolved(doubtful[m]) && (apart.empty() || apart.back() != doubtful[m])) {
-      apart.push_back(doubtful[m]);
-    }
+    if (!agree || x.unresolved > missedAllowed(k)) apart.push_back(k);
   }
   settle(batch, apart);
 }
