@@ -117,7 +117,8 @@ TEST(ExactEstimate, ASampleKeepsToItsBound) {
   EXPECT_LT(tests, sample.most_tests + beyond);
 }
 
-/// What is settled before a descent is easy: a sample without any other pairs knows nothing of them.
+/// What is settled before a descent is easy: a sample without any other pairs knows nothing of
+/// them.
 TEST(ExactEstimate, ASampleGoesOnUntilADescentSettlesPairs) {
   const PatchMesh mesh = meshNamed("furnished-room", 600);
   Progress silent;

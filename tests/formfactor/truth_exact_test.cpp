@@ -161,7 +161,8 @@ TEST(ExactAgainstTruth, FacesAsPatchesAreTheSamePatches) {
   ASSERT_EQ(faces.mesh.size(), own.mesh.size());
   EXPECT_EQ(faces.factors.report.exact.solids, own.factors.report.exact.solids);
   EXPECT_EQ(faces.factors.report.exact.occluded, own.factors.report.exact.occluded);
-  // Patch k is face k. A row's error is at most twice its figure (tests/property), in either matrix.
+  // Patch k is face k. A row's error is at most twice its figure (tests/property), in either
+  // matrix.
   for (std::size_t i = 0; i < own.mesh.size(); i += 7) {
     double square = 0;
     for (std::size_t j = 0; j < own.mesh.size(); ++j) {

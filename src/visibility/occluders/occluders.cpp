@@ -33,9 +33,9 @@ void attach(Occluder& solid, Index face, Index facet, const ElementSet& elements
 }
 
 /// Adds facets near a solid that has all of itself behind them, to where a plane may be off by the
-/// coincidence on either side: it hides nothing from them. (Two triangles of a box's side that noise
-/// has turned, and another box across the edge between them: one was part of the solid, the other
-/// lay half within it by 1.07 coincidences, and half of it saw nothing.)
+/// coincidence on either side: it hides nothing from them. (Two triangles of a box's side that
+/// noise has turned, and another box across the edge between them: one was part of the solid, the
+/// other lay half within it by 1.07 coincidences, and half of it saw nothing.)
 void addFacetsInFront(Occluder& solid, const OccluderPolygons& all,
                       const std::vector<std::vector<Index>>& facets, const ElementSet& elements) {
   const double behind = 2 * all.coincidence;
