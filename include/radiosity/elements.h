@@ -28,8 +28,8 @@ struct ElementOptions {
   /// 1 or more, in each field, besides the corners of patches. At this limit the elements that
   /// promise least stay coarse.
   std::size_t most_vertices = 400000;
-  /// Rays per vertex in the last pass, which is shown: a power of two, 64 to 4096. Passes before it
-  /// take a quarter, or an eighth where patches share unknowns.
+  /// Rays per vertex: a power of two, 64 to 4096. A cell of the sources has a sixteenth, sixteen at
+  /// least.
   int rays = 512;
   /// 1 or more, of all passes together. At this limit each vertex gets fewer rays.
   double most_rays = 1e8;

@@ -62,7 +62,7 @@ constexpr double kSettled = 0.0003;
 constexpr int kMostPasses = 24;
 /// Rays of a cell of the sources over those of a vertex; and the most of all cells: where they end
 /// is kept, in 64 MiB, or 16 rays a cell if that is more.
-constexpr double kRaysOfCell = 0.25;
+constexpr double kRaysOfCell = 1.0 / 16;
 constexpr double kMostKept = 1u << 24;
 /// Direct light by rays: its steps are not refined below this.
 constexpr double kAimedTolerance = 0.02;
