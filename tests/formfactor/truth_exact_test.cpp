@@ -162,14 +162,19 @@ TEST(ExactAgainstTruth, FacesAsPatchesAreTheSamePatches) {
   EXPECT_EQ(faces.factors.report.exact.solids, own.factors.report.exact.solids);
   EXPECT_EQ(faces.factors.report.exact.occluded, own.factors.report.exact.occluded);
   // Patch k is face k. A row's error is at most twice its figure (tests/property), in either
-  // matrix.
+  // matrix. All values but one in 10^5 are within ten tolerances of the truth, so that two are
+  // within twenty.
+  std::size_t beyond = 0;
   for (std::size_t i = 0; i < own.mesh.size(); i += 7) {
     double square = 0;
     for (std::size_t j = 0; j < own.mesh.size(); ++j) {
-      square += std::pow(faces.factors.matrix->at(i, j) - own.factors.matrix->at(i, j), 2);
+      const double apart = faces.factors.matrix->at(i, j) - own.factors.matrix->at(i, j);
+      square += apart * apart;
+      beyond += std::abs(apart) > 0.02 / double(own.mesh.size()) ? 1 : 0;
     }
     EXPECT_LE(std::sqrt(square), 2 * (faces.factors.error[i] + own.factors.error[i])) << i;
   }
+  EXPECT_LE(double(beyond), 1e-5 * double(own.mesh.size() * (own.mesh.size() / 7 + 1)));
 }
 
 }  // namespace

@@ -20,9 +20,9 @@ struct Plane {
 
 /// Puts every face into exactly one plane, together with the coplanar faces connected to it (boxes
 /// that overlap, from face to face). Coplanar: every vertex of every face lies within the
-/// coincidence of the plane, so a plane cannot drift. (Nor is one seen beside another that it
-/// touches: visibility takes what is nearer than that for touching. With half of it, noise of half
-/// a coincidence left lamps in front of ceilings that were seen through them.) Faces with the
+/// coincidence of the plane, so a plane cannot drift. (Visibility takes what is nearer to a plane
+/// than the coincidence for touching it, which hides nothing. With half the coincidence here, noise
+/// of that size left lamps in front of ceilings, which were seen through them.) Faces with the
 /// handling `alone` have a plane each.
 std::vector<Plane> groupByPlane(const InputFaces& input);
 
