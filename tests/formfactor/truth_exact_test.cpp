@@ -174,7 +174,7 @@ TEST(ExactAgainstTruth, FacesAsPatchesAreTheSamePatches) {
     }
     EXPECT_LE(std::sqrt(square), 2 * (faces.factors.error[i] + own.factors.error[i])) << i;
   }
-  EXPECT_LE(double(beyond), 1e-5 * double(own.mesh.size() * (own.mesh.size() / 7 + 1)));
+  EXPECT_LE(double(beyond), 1e-5 * double(own.mesh.size()) * double(own.mesh.size()) / 7);
 }
 
 }  // namespace
