@@ -156,7 +156,7 @@ struct Elements {
 
 /// Evaluates irradiance at element vertices. `irradiance`: N * bands, of the solved patches, W/m^2.
 /// Direct light is exact, point to polygon, with blocked parts clipped off. Indirect light is found
-/// by rays in passes; the elements of each are the sources of the next. `wanted`: N
+/// by rays in passes that end on cells of the patches (src/elements/README.md). `wanted`: N
 /// flags, 1: the patch's elements are wanted; empty: all. Other patches are evaluated only as far
 /// as wanted ones receive light from them; those with edges below 1/200 of the scene's diagonal not
 /// at all. The same bits for any number of threads. Errors:

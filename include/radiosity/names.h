@@ -90,6 +90,7 @@ constexpr const auto& tableOf(SolveStatus) { return kSolveStatusNames; }
 constexpr const auto& tableOf(HeatStatus) { return kHeatStatusNames; }
 constexpr const auto& tableOf(GatherStatus) { return kGatherStatusNames; }
 constexpr const auto& tableOf(DirectLight) { return kDirectLightNames; }
+constexpr const auto& tableOf(Up) { return kUpNames; }
 constexpr const auto& tableOf(VertexColours) { return kVertexColoursNames; }
 constexpr const auto& tableOf(FormFactorMethod) { return kMethodNames; }
 constexpr const auto& tableOf(ClosureMode) { return kClosureNames; }

@@ -78,6 +78,17 @@ struct JournalOptions {
   /// Only if form factors are expected to take this many seconds, or if the file has rows of the
   /// same: less is soon computed again.
   double from_seconds = 10;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "resume",
+          .help = "Keep rows in OUT.h5.rows as they are computed, and go on from those that a run "
+                  "which was broken off has left; --no-resume: begin anew (default: resume, and "
+                  "keep rows where they are foreseen to take {:g} s; given, always)",
+          .figures = {JournalOptions().from_seconds},
+          .in_key = InKey::never},
+         o.resume);
+  }
 };
 
 /// The options of every stage.
@@ -250,7 +261,7 @@ class Pipeline {
   void openResults(const std::string& path, const SceneOptions& scene);
   void openSource(const std::string& path);
   void openReused(const std::string& path);
-  void overrideScene(const SceneOptions& overrides);
+  void overrideScene(const SceneOverrides& overrides);
 
   // One way for every stage (pipeline/stages/get_or_make.h).
   template <class T, class Make>

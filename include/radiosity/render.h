@@ -151,12 +151,18 @@ Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Cam
 
 /// Light that is gathered for every pixel.
 struct PixelGatherOptions {
-  /// 64 to 65536: rays of indirect light, which the pixel's samples share; each sample has a power
+  /// Rays of indirect light, which the pixel's samples share; each sample has a power
   /// of two, 16 to 4096.
   int rays = 1024;
-  /// 1 or more, of the picture. At this limit pixels have fewer rays, but at least 64.
+  /// Of the picture. At this limit pixels have fewer rays, but at least 64.
   double most_rays = 2e9;
   void validate() const;
+
+  /// A line an option (option_line.h).
+  static void describe(auto& list, auto& o) {
+    list({.name = "rays"}, o.rays, {.from = 64, .to = 65536});
+    list({.name = "most_rays"}, o.most_rays, {.from = 1});
+  }
 };
 
 struct PixelGatherReport {

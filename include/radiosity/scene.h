@@ -11,6 +11,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/light.h"
+#include "radiosity/option_line.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -116,27 +117,108 @@ void validate(const Scene& scene);
 /// What the colours of vertices in a file mean. glTF says so itself (linear), other formats do not.
 enum class VertexColours { unused, linear, srgb };
 
-/// Options of reading a file. The defaults are those of the README.
-struct SceneOptions {
+/// Changes to a scene that has been read: applyOverrides(). NAMEs are as it takes them.
+struct SceneOverrides {
+  std::vector<std::string> set;  ///< "NAME.PROPERTY=VALUE"
+  std::string materials_file;    ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
+  std::vector<std::string> one_sided;
+  std::vector<std::string> two_sided;  ///< applied after one_sided
+  std::vector<std::string> flip;       ///< their faces are turned over
+  std::vector<std::string> without;    ///< their faces are left out
+  std::optional<Up> up;                ///< replaces Scene::up, which depends on the format
+  std::vector<Light> lights;           ///< each replaces that of its name in Scene::lights
+
+  /// A line an option (option_line.h), but for lights.
+  static void describe(auto& list, auto& o) {
+    list({.name = "set",
+          .value = "NAME.PROPERTY=VALUE",
+          .help = "Override a surface, material or object, those that a pattern matches ('*wall*') "
+                  "or all: reflectance (0 to 1), emission (exitance, W/m^2) or radiance "
+                  "(W/m^2/sr), which replace a texture, or tint, which keeps it and multiplies; "
+                  "one number or three (R,G,B). May be repeated"},
+         o.set);
+    list({.name = "materials_file",
+          .option = "materials",
+          .value = "FILE.json",
+          .help = R"(Overrides from a file: {{"NAME": {{"reflectance": [R,G,B], )"
+                  R"("emission": [R,G,B]}}}})"},
+         o.materials_file);
+    list({.name = "one_sided",
+          .value = "NAME|all",
+          .help = "Make surfaces one-sided: black from behind, but they block. May be repeated"},
+         o.one_sided);
+    list({.name = "two_sided",
+          .value = "NAME|all",
+          .help = "Make surfaces two-sided, after those that become one-sided. May be repeated"},
+         o.two_sided);
+    list({.name = "flip",
+          .value = "NAME|all",
+          .help = "Turn surfaces over: a room that faces outward, a cap that faces the other way. "
+                  "May be repeated"},
+         o.flip);
+    list({.name = "without",
+          .value = "NAME",
+          .help = "Leave surfaces out, for instance glass, which is solid here. May be repeated"},
+         o.without);
+    list({.name = "up",
+          .value = "y|z",
+          .help = "Axis that points up, for cameras that nobody gave: y or z (default: z in .stl, "
+                  ".3mf, .msh, .inp, .vs3 and VTK's files, else y)"},
+         o.up);
+  }
+};
+
+/// How a file is read, and what is changed then. The defaults are those of the README.
+struct SceneOptions : SceneOverrides {
   std::string unit;                  ///< mm|cm|m|in|ft; empty: the file's, else metres
   bool kd_is_srgb = false;           ///< Kd and base colour of an OBJ are sRGB, linearise them
   double default_reflectance = 0.5;  ///< of faces without a material; 0 to 1
   /// Of formats that do not say it: factors of the reflectance, or the reflectance itself of faces
   /// without a material.
   VertexColours vertex_colours = VertexColours::unused;
-  bool textures = true;          ///< false: the material's factor alone
-  double max_image = 100;        ///< largest texture, in millions of pixels; above 0
-  std::vector<std::string> set;  ///< "NAME.PROPERTY=VALUE", see applyOverrides()
-  std::string materials_file;    ///< JSON {"NAME": {"reflectance": .., "emission": ..}}
-  // NAMEs as applyOverrides() takes them.
-  std::vector<std::string> one_sided;
-  std::vector<std::string> two_sided;  ///< applied after one_sided
-  std::vector<std::string> flip;       ///< their faces are turned over
-  std::vector<std::string> without;    ///< their faces are left out
-  std::vector<Light> lights;           ///< each replaces that of its name in Scene::lights
-  std::optional<Up> up;                ///< replaces Scene::up, which depends on the format
+  bool textures = true;    ///< false: the material's factor alone
+  double max_image = 100;  ///< largest texture, in millions of pixels; above 0
   /// Throws InputError naming the option and its range.
   void validate() const;
+
+  /// A line an option of reading. Those in keys decide what is read; results files, which hold a
+  /// scene that has been read, refuse them.
+  static void describe(auto& list, auto& o) {
+    list({.name = "unit",
+          .value = "UNIT",
+          .help = "Unit of the scene file: mm, cm, m, in or ft (default: the file's, else m)"},
+         o.unit);
+    list({.name = "kd_is_srgb",
+          .option = "kd-is",
+          .value = "linear|srgb",
+          .help = "How Kd and base colours are written",
+          .on = "srgb",
+          .off = "linear"},
+         o.kd_is_srgb);
+    list({.name = "default_reflectance",
+          .value = "RHO",
+          .help = "Reflectance of faces without a material"},
+         o.default_reflectance, {.from = 0, .to = 1});
+    list({.name = "vertex_colours",
+          .value = "off|linear|srgb",
+          .help = "Multiply the reflectance by the colours of vertices, in linear or sRGB numbers; "
+                  "without a material they are the reflectance (default off; glTF's are always "
+                  "used, linear)"},
+         o.vertex_colours);
+    list({.name = "textures",
+          .value = "on|off",
+          .help = "Average textures over each patch (on, default) or use the material's factor "
+                  "alone"},
+         o.textures);
+    // A Texture counts its pixels with an int.
+    list({.name = "max_image",
+          .value = "MEGAPIXELS",
+          .unit = "megapixels",
+          .help = "Largest image that is read, in millions of pixels (default 100: 8K textures; 1 "
+                  "takes up to 30 MB while it is read)",
+          .in_key = InKey::never},
+         o.max_image, {.to = 2000, .above = 0});
+  }
 };
 
 /// The extensions of the files that loadScene() reads: ".obj, .gltf, ...".
@@ -154,17 +236,16 @@ std::string sceneExtensions();
 /// cure; RunError if the scene does not fit into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Applies `set`, `materials_file`, `one_sided`, `two_sided`, `flip`, `without`, `lights`, `up` to
-/// a scene already in memory (one that came back from a results file). NAME is a surface, material
-/// or object, tried in that order, but the material comes first if a surface has its name only
-/// because its object has it too. If nothing is called so, "all" is every surface, and a pattern
-/// (src/base/name_pattern.h) every surface that it matches by its own name, its object's or its
-/// material's. PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint (a
-/// factor of the reflectance); VALUE is one number or three with commas. Reflectance and emission
-/// replace a texture, tint keeps it. A surface that shares its material gets its own copy. A note
-/// names materials of reflectance 1. Unknown names are an InputError that lists the existing ones,
-/// the most similar first; so is leaving out all faces.
-void applyOverrides(Scene& scene, const SceneOptions& options);
+/// Changes a scene already in memory (one that came back from a results file). NAME is a surface,
+/// material or object, tried in that order, but the material comes first if a surface has its name
+/// only because its object has it too. If nothing is called so, "all" is every surface, and a
+/// pattern (src/base/name_pattern.h) every surface that it matches by its own name, its object's or
+/// its material's. PROPERTY is reflectance, emission (exitance, W/m^2), radiance (W/m^2/sr) or tint
+/// (a factor of the reflectance); VALUE is one number or three with commas. Reflectance and
+/// emission replace a texture, tint keeps it. A surface that shares its material gets its own copy.
+/// A note names materials of reflectance 1. Unknown names are an InputError that lists the existing
+/// ones, the most similar first; so is leaving out all faces.
+void applyOverrides(Scene& scene, const SceneOverrides& overrides);
 
 /// One surface as `radiosity info` prints it.
 struct SurfaceInfo {

@@ -1,4 +1,4 @@
-// FNV-1a, 64 bits: identities for caching and for seeds. Not for security.
+// Identities for caching and for seeds: FNV-1a, 64 bits. Not for security.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,14 @@
 #include <string_view>
 
 namespace radiosity {
+
+/// Bits that all depend on all of the given ones (the finaliser of SplitMix64, Steele, Lea & Flood
+/// 2014).
+constexpr std::uint64_t mixed(std::uint64_t bits) {
+  bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebULL;
+  return bits ^ (bits >> 31U);
+}
 
 class Hash {
  public:

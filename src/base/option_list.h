@@ -21,6 +21,9 @@ template <class T>
 inline constexpr bool kIsOptional = false;
 template <class T>
 inline constexpr bool kIsOptional<std::optional<T>> = true;
+/// Given several times, it is the list of all.
+template <class T>
+inline constexpr bool kIsRepeated = std::is_same_v<T, std::vector<std::string>>;
 
 template <class T>
 std::string optionText(const OptionLine& line, const T& value) {
@@ -32,6 +35,8 @@ std::string optionText(const OptionLine& line, const T& value) {
     return value ? optionText(line, *value) : line.unset;
   } else if constexpr (std::is_same_v<T, std::vector<double>>) {
     return value.empty() ? line.unset : fmt::format("{}", fmt::join(value, ","));
+  } else if constexpr (kIsRepeated<T>) {
+    return fmt::format("{}", fmt::join(value, ","));
   } else {
     return fmt::format("{}", value);
   }
@@ -64,6 +69,9 @@ bool readOption(const OptionLine& line, std::string_view text, T& value) {
     return true;
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = text;
+    return true;
+  } else if constexpr (kIsRepeated<T>) {
+    value.emplace_back(text);
     return true;
   } else {
     T parsed{};
@@ -100,11 +108,13 @@ struct Option {
   OptionRange range;
   std::string text;
   std::vector<std::string> words;  ///< that the text may be; empty: it is a number, or any text
+  bool repeated = false;
 };
 
-/// Whether it is turned on and off by its name alone.
+/// Whether it is turned on and off by its name alone: the line gives it no value.
 inline bool isFlag(const Option& option) {
-  return option.words == std::vector<std::string>{"on", "off"};
+  return option.words == std::vector<std::string>{"on", "off"} &&
+         option.line.value == std::string_view(OptionLine().value);
 }
 
 template <class T>
@@ -127,10 +137,22 @@ std::vector<Option> optionLines(const Options& options) {
   std::vector<Option> all;
   const auto list = [&all](const OptionLine& line, const auto& value,
                            const OptionRange& range = {}) {
-    all.push_back({line, range, optionText(line, value), optionWords(line, value)});
+    all.push_back({line, range, optionText(line, value), optionWords(line, value),
+                   kIsRepeated<std::remove_cvref_t<decltype(value)>>});
   };
   Options::describe(list, options);
   return all;
+}
+
+/// Those that differ from the defaults.
+template <class Options>
+std::vector<Option> changedOptions(const Options& options) {
+  const std::vector<Option> usual = optionLines(Options());
+  std::vector<Option> changed;
+  for (std::size_t k = 0; const Option& option : optionLines(options)) {
+    if (option.text != usual[k++].text) changed.push_back(option);
+  }
+  return changed;
 }
 
 /// "name=value name=value ...": the options that a result depends on, as keys have them.

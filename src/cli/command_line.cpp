@@ -75,10 +75,6 @@ void addGeneralOptions(CLI::App& app, Request& r, Command command) {
          "factors that are foreseen to take longer than what is left. Seconds, or 90s, 10m, 2h")
       ->option_text("TIME")
       ->group("General");
-  add(app, "General", "--max-image", r.scene.max_image, "MEGAPIXELS",
-      fmt::format("Largest image that is read, in millions of pixels (default {:g}: 8K textures; 1 "
-                  "takes up to 30 MB while it is read)",
-                  SceneOptions().max_image));
   add(app, "General", "--report", r.report, "FILE.json",
       "Write every figure of the run, machine-readable");
   app.add_flag("--quiet", r.quiet, "Print errors and loud warnings only")->group("General");
@@ -262,6 +258,8 @@ std::optional<int> parseCommandLine(int argc, char** argv, Request& request) {
     throw InputError(explain(error, *subs[chosen]));
   }
   request.command = kCommands[chosen];
+  request.given.applyTo<SceneOverrides>(request.scene);
+  request.scene = request.apply(request.scene);
   request.validate();
   return std::nullopt;
 }

@@ -15,7 +15,8 @@ namespace {
 std::string helpOf(const Option& option) {
   std::string help = option.line.helpText(option.range);
   const bool says_default = help.find("efault") != std::string::npos;
-  if (!says_default && !isFlag(option)) help += fmt::format(" (default {})", option.text);
+  if (!says_default && !isFlag(option) && !option.text.empty())
+    help += fmt::format(" (default {})", option.text);
   return help;
 }
 
@@ -38,13 +39,19 @@ void addOptions(CLI::App& app, Request& r, const char* group, const std::vector<
     if (*option.line.help == '\0' || app.get_option_no_throw(spelled) != nullptr) continue;
     const bool bytes = option.line.value == std::string_view("SIZE");
     const auto take = [&r, name, spelled, bytes](const std::string& text) {
-      r.given.add(name, spelled, bytes ? fmt::format("{}", parseBytes(spelled, text)) : text);
+      r.given.add(name, spelled, {bytes ? fmt::format("{}", parseBytes(spelled, text)) : text});
     };
     if (isFlag(option)) {
       addFlag(app, called, option, take)->group(group);
       continue;
     }
-    CLI::Option* added = app.add_option_function<std::string>(spelled, take, helpOf(option));
+    const auto take_all = [&r, name, spelled](const std::vector<std::string>& texts) {
+      r.given.add(name, spelled, texts);
+    };
+    CLI::Option* added =
+        option.repeated
+            ? app.add_option_function<std::vector<std::string>>(spelled, take_all, helpOf(option))
+            : app.add_option_function<std::string>(spelled, take, helpOf(option));
     added->group(group)->option_text(option.line.value)->allow_extra_args(false);
     if (!option.words.empty()) added->check(CLI::IsMember(option.words));
   }

@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "base/option_list.h"
 #include "radiosity/base.h"
@@ -28,8 +29,9 @@ void nameOption(const std::string& option, const Check& check) {
 class GivenOptions {
  public:
   /// `name`: OptionLine::optionName(). `spelled`: as the command line calls it, for messages.
-  void add(const std::string& name, const std::string& spelled, const std::string& text) {
-    given_[name] = {spelled, text};
+  void add(const std::string& name, const std::string& spelled,
+           const std::vector<std::string>& texts) {
+    given_[name] = {spelled, texts};
   }
   bool has(const std::string& name) const { return given_.contains(name); }
   /// The option as the command line calls it.
@@ -43,18 +45,35 @@ class GivenOptions {
     return {};
   }
 
+  /// The same of a struct's options that are in keys.
+  template <class Options>
+  std::string firstOf() const {
+    const std::vector<std::string> all = allOf<Options>();
+    return all.empty() ? std::string() : all.front();
+  }
+  template <class Options>
+  std::vector<std::string> allOf() const {
+    std::vector<std::string> all;
+    for (const Option& option : optionLines(Options())) {
+      const std::string name = option.line.optionName();
+      if (option.line.in_key != InKey::never && has(name)) all.push_back(spelled(name));
+    }
+    return all;
+  }
+
   /// Sets what was given; other fields keep their values. Errors: InputError naming the option.
   template <class Options>
   void applyTo(Options& options) const {
     const auto list = [this](const OptionLine& line, auto& value, const OptionRange& range = {}) {
       const auto found = given_.find(line.optionName());
       if (found == given_.end() || *line.help == '\0') return;
-      const auto& [spelled, text] = found->second;
-      if (!readOption(line, text, value)) {
-        throw InputError(fmt::format("{}: `{}` is not {}", spelled, wrongPart(text),
-                                     std::is_integral_v<std::remove_cvref_t<decltype(value)>>
-                                         ? "a whole number from 0 on"
-                                         : "a number; separate several by commas alone"));
+      const auto& [spelled, texts] = found->second;
+      using Value = std::remove_cvref_t<decltype(value)>;
+      if constexpr (kIsRepeated<Value>) value.clear();
+      for (const std::string& text : texts) {
+        if (readOption(line, text, value)) continue;
+        throw InputError(
+            fmt::format("{}: `{}` is not {}", spelled, wrongPart(text), kWanted<Value>));
       }
       requireOption(spelled, line, value, range);
     };
@@ -62,6 +81,11 @@ class GivenOptions {
   }
 
  private:
+  template <class Value>
+  static constexpr const char* kWanted =
+      std::is_integral_v<Value>                    ? "a whole number from 0 on"
+      : std::is_same_v<Value, std::vector<double>> ? "a number; separate several by commas alone"
+                                                   : "a number";
   /// Words were checked when they were parsed: the text is a number, or several.
   static std::string wrongPart(const std::string& text) {
     for (const std::string_view part : splitAt(text, ',')) {
@@ -71,7 +95,7 @@ class GivenOptions {
   }
   struct Given {
     std::string spelled;
-    std::string text;
+    std::vector<std::string> texts;  ///< one, but for options that may be repeated
   };
   std::map<std::string, Given> given_;
 };

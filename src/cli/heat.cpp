@@ -53,7 +53,7 @@ void noteLightOptions(Session& session, bool materials_are_used) {
   for (const Light& light : scene.lights) {
     unused.push_back("--" + light.name + " (heat has --sky-temperature)");
   }
-  for (const std::string& name : session.request.reading_options) {
+  for (const std::string& name : session.request.given.allOf<SceneOptions>()) {
     if (name != "--unit" && !materials_are_used) unused.push_back(name);
   }
   if (unused.empty()) return;

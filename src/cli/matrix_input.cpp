@@ -29,17 +29,10 @@ bool takesMatrixFile(const Request& request) {
 }
 
 void refuseSceneOptions(const Request& request) {
-  const std::pair<const char*, bool> of_scenes[] = {
-      {"--set", !request.scene.set.empty()},
-      {"--materials", !request.scene.materials_file.empty()},
-      {"--one-sided", !request.scene.one_sided.empty()},
-      {"--two-sided", !request.scene.two_sided.empty()},
-      {"--flip", !request.scene.flip.empty()},
-      {"--without", !request.scene.without.empty()},
-      {"--elements", request.elements.has_value()},
-      {"--basis", !request.basis.empty()},
-      {"--mix", !request.mix.empty()},
-      {"--lightmap", !request.lightmap.empty()}};
+  const std::pair<const char*, bool> of_scenes[] = {{"--elements", request.elements.has_value()},
+                                                    {"--basis", !request.basis.empty()},
+                                                    {"--mix", !request.mix.empty()},
+                                                    {"--lightmap", !request.lightmap.empty()}};
   const auto refuse = [&](const std::string& name) {
     throw InputError(
         fmt::format("{}: is about a scene, and {} is a matrix; leave it out", name, request.input));
@@ -48,10 +41,11 @@ void refuseSceneOptions(const Request& request) {
     if (given) refuse(name);
   }
   if (!request.scene.lights.empty()) refuse("--" + request.scene.lights.front().name);
-  if (!request.reading_options.empty()) refuse(request.reading_options.front());
-  const std::string of_stages =
-      request.given.firstOf({"patches", "max-edge", "method", "tolerance", "closure"});
-  if (!of_stages.empty()) refuse(of_stages);
+  for (const std::string& given :
+       {request.given.firstOf<SceneOverrides>(), request.given.firstOf<SceneOptions>(),
+        request.given.firstOf({"patches", "max-edge", "method", "tolerance", "closure"})}) {
+    if (!given.empty()) refuse(given);
+  }
 }
 
 MatrixFile readMatrixInput(Session& session) {

@@ -62,8 +62,9 @@ HeatOptions Request::apply(HeatOptions options) const {
 JournalOptions Request::journal(const std::string& results_output) const {
   JournalOptions options;
   if (!results_output.empty()) options.path = results_output + ".rows";
-  options.resume = resume.value_or(true);
-  if (resume == true) options.from_seconds = 0;  // asked for, so also in a short run
+  given.applyTo(options);
+  // Asked for, so also in a short run.
+  if (given.has("resume") && options.resume) options.from_seconds = 0;
   return options;
 }
 
@@ -112,7 +113,6 @@ void Request::validate() const {
   apply(HeatOptions());
   apply(LightmapOptions());
   apply(CompareOptions());
-  nameOption("--max-image", [this] { scene.validate(); });
   renderOptions();
   exposureStops();
   checkCamera(camera);

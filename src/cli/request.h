@@ -31,12 +31,9 @@ struct Request {
   bool devices = false;  ///< of `info`: list devices for hemicubes, instead of a scene
 
   SceneOptions scene;
-  /// The given options that only apply to reading a scene file ("--unit").
-  std::vector<std::string> reading_options;
 
-  /// Of the stages, of pictures and of comparisons.
+  /// Of the scene, the stages, pictures and comparisons.
   GivenOptions given;
-  std::optional<bool> resume;
 
   std::string between;              ///< surfaces, groups or patches; empty: the output's default
   std::vector<std::string> groups;  ///< "NAME=PATTERN"

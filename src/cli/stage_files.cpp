@@ -18,10 +18,11 @@ namespace {
 
 /// Refuses every given option for reading scenes, even if its value is the default.
 void refuseReadingOptions(const Request& request) {
-  if (request.reading_options.empty() || !isResultsFile(request.input)) return;
+  const std::string given = request.given.firstOf<SceneOptions>();
+  if (given.empty() || !isResultsFile(request.input)) return;
   throw InputError(fmt::format(
       "{}: {} says how a scene file is read, and this is a results file; give the scene file",
-      request.input, request.reading_options.front()));
+      request.input, given));
 }
 
 /// Refuses a file with only form factors, which few subcommands take.

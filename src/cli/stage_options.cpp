@@ -4,25 +4,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
-#include <optional>
 
-#include "base/parse.h"
 #include "cli/options.h"
 #include "cli/validators.h"
-#include "radiosity/names.h"
 #include "radiosity/tables.h"
 
 namespace radiosity::cli {
 
 namespace {
-
-double parseReflectance(const std::string& text) {
-  const std::optional<double> value = parseNumber(text);
-  if (!value) {
-    throw InputError(fmt::format("--default-reflectance: '{}' is not a number", text));
-  }
-  return *value;
-}
 
 /// `kind`: a light as it is by default.
 void addLightOption(CLI::App& app, Request& r, const Light& kind) {
@@ -39,79 +28,12 @@ void addLightOption(CLI::App& app, Request& r, const Light& kind) {
       ->option_text(value + kind.parametersText());
 }
 
-/// Options that also apply to the scene in a results file.
-void addOverrideOptions(CLI::App& app, Request& r) {
-  add(app, "Scene", "--set", r.scene.set, "NAME.PROPERTY=VALUE",
-      "Override a surface, material or object, those that a pattern matches ('*wall*') or all: "
-      "reflectance (0 to 1), emission (exitance, W/m^2) or radiance (W/m^2/sr), which replace a "
-      "texture, or tint, which keeps it and multiplies; one number or three (R,G,B). May be "
-      "repeated");
-  for (const Light& kind : lightKinds()) addLightOption(app, r, kind);
-  app.add_option_function<std::string>(
-         "--up", [&r](const std::string& text) { r.scene.up = named(kUpNames, text); },
-         "Axis that points up, for cameras that nobody gave: y or z (default: z in .stl, .3mf, "
-         ".msh, .inp, .vs3 and VTK's files, else y)")
-      ->check(CLI::IsMember(namesIn(kUpNames)))
-      ->group("Scene")
-      ->option_text("y|z");
-  add(app, "Scene", "--materials", r.scene.materials_file, "FILE.json",
-      R"(Overrides from a file: {"NAME": {"reflectance": [R,G,B], "emission": [R,G,B]}})");
-  add(app, "Scene", "--one-sided", r.scene.one_sided, "NAME|all",
-      "Make surfaces one-sided: black from behind, but they block. May be repeated");
-  add(app, "Scene", "--two-sided", r.scene.two_sided, "NAME|all",
-      "Make surfaces two-sided (applied after --one-sided). May be repeated");
-  add(app, "Scene", "--flip", r.scene.flip, "NAME|all",
-      "Turn surfaces over: a room that faces outward, a cap that faces the other way. May be "
-      "repeated");
-  add(app, "Scene", "--without", r.scene.without, "NAME",
-      "Leave surfaces out, for instance glass, which is solid here. May be repeated");
-}
-
 }  // namespace
 
 void addSceneOptions(CLI::App& app, Request& r) {
-  const SceneOptions defaults;
-  const auto reading = [&app, &r](const std::string& name, auto assign, const char* placeholder,
-                                  const std::string& description) {
-    return app
-        .add_option_function<std::string>(
-            name,
-            [&r, name, assign](const std::string& text) {
-              assign(text);
-              nameOption(name, [&r] { r.scene.validate(); });
-              r.reading_options.push_back(name);
-            },
-            description)
-        ->group("Scene")
-        ->option_text(placeholder);
-  };
-  reading(
-      "--unit", [&r](const std::string& t) { r.scene.unit = t; }, "UNIT",
-      "Unit of the scene file: mm, cm, m, in or ft (default m)")
-      ->check(CLI::IsMember({"mm", "cm", "m", "in", "ft"}));
-  reading(
-      "--kd-is", [&r](const std::string& t) { r.scene.kd_is_srgb = t == "srgb"; }, "SPACE",
-      "How Kd and base colours are written: linear or srgb (default linear)")
-      ->check(CLI::IsMember({"linear", "srgb"}));
-  reading(
-      "--default-reflectance",
-      [&r](const std::string& t) { r.scene.default_reflectance = parseReflectance(t); }, "RHO",
-      fmt::format("Reflectance of faces without a material, 0 to 1 (default {})",
-                  defaults.default_reflectance));
-  reading(
-      "--vertex-colours",
-      [&r](const std::string& t) {
-        r.scene.vertex_colours = named(kVertexColoursNames, t).value();
-      },
-      "off|linear|srgb",
-      "Multiply the reflectance by the colours of vertices, in linear or sRGB numbers; without a "
-      "material they are the reflectance (default off; glTF's are always used, linear)")
-      ->check(CLI::IsMember(namesIn(kVertexColoursNames)));
-  reading(
-      "--textures", [&r](const std::string& t) { r.scene.textures = t == "on"; }, "on|off",
-      "Average textures over each patch (on, default) or use the material's factor alone")
-      ->check(CLI::IsMember({"on", "off"}));
-  addOverrideOptions(app, r);
+  addOptionsOf<SceneOptions>(app, r, "Scene");
+  addOptionsOf<SceneOverrides>(app, r, "Scene");
+  for (const Light& kind : lightKinds()) addLightOption(app, r, kind);
 }
 
 void addMeshOptions(CLI::App& app, Request& r) {
@@ -144,13 +66,7 @@ void addFactorOptions(CLI::App& app, Request& r) {
         fmt::format("{}; where elements are shown and no form factors are written, {} by default",
                     tolerance->get_description(), FormFactorOptions::kSourceTolerance));
   }
-  app.add_flag_function(
-         "--resume,!--no-resume", [&r](std::int64_t count) { r.resume = count > 0; },
-         fmt::format("Keep rows in OUT.h5.rows as they are computed, and go on from those that a "
-                     "run which was broken off has left; --no-resume: begin anew (default: resume, "
-                     "and keep rows where they are foreseen to take {:g} s; given, always)",
-                     JournalOptions().from_seconds))
-      ->group("Form factors");
+  addOptionsOf<JournalOptions>(app, r, "Form factors");
 }
 
 void addAreasOption(CLI::App& app, Request& r, const char* group) {

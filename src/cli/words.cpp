@@ -149,18 +149,21 @@ std::string shortened(const std::string& text) {
 
 std::string spelledAsOption(std::string_view field, std::string_view value) {
   // Of options that no struct lists.
-  constexpr std::pair<std::string_view, const char*> kNames[] = {{"groups", "group"},
-                                                                 {"conditions", "condition"},
-                                                                 {"table", "thermal"},
-                                                                 {"kd_is_srgb", "kd-is"}};
+  constexpr std::pair<std::string_view, const char*> kNames[] = {
+      {"groups", "group"}, {"conditions", "condition"}, {"table", "thermal"}};
   const std::string name(field);
   OptionLine line{.name = name.c_str()};
   for (const auto& [known, option] : kNames) {
     if (field == known) line.option = option;
   }
-  for (const Option& option : optionLines(FormFactorOptions())) {
-    if (field == option.line.name) line.option = option.line.option;
-  }
+  const auto look = [&](const std::vector<Option>& options) {
+    for (const Option& option : options) {
+      if (field == option.line.name) line.option = option.line.option;
+    }
+  };
+  look(optionLines(SceneOptions()));
+  look(optionLines(SceneOverrides()));
+  look(optionLines(FormFactorOptions()));
   return fmt::format("--{}{}{}", line.optionName(), value.empty() ? "" : " ", value);
 }
 

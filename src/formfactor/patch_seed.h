@@ -16,12 +16,7 @@ inline std::uint64_t patchSeed(const PatchMesh& mesh, std::size_t patch, std::ui
   hash.bytes(&mesh.index_in_surface[patch], sizeof(Index));
   hash.bytes(&mesh.side[patch], 1);
   hash.bytes(&seed, sizeof seed);
-  // FNV-1a leaves the last bytes little mixed; the finaliser of splitmix64 (Steele et al. 2014)
-  // spreads them over all bits.
-  std::uint64_t bits = hash.value();
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ull;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebull;
-  return bits ^ (bits >> 31);
+  return mixed(hash.value());  // FNV-1a leaves the last bytes little mixed
 }
 
 }  // namespace radiosity

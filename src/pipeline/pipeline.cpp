@@ -11,6 +11,7 @@
 #include "base/file_name.h"
 #include "base/input_file.h"
 #include "base/made.h"
+#include "base/option_list.h"
 #include "base/parallel.h"
 #include "base/process_memory.h"
 #include "base/processes.h"
@@ -22,6 +23,7 @@
 #include "pipeline/shared_journal.h"
 #include "pipeline/stage_key.h"
 #include "pipeline/stages/get_or_make.h"
+#include "radiosity/names.h"
 #include "radiosity/spelling.h"
 #include "radiosity/version.h"
 #include "results/matrix_blocks.h"
@@ -34,24 +36,19 @@ namespace {
 /// Red, green and blue: scene files have no other bands.
 constexpr int kSceneBands = 3;
 
-/// The first option given that applies only to scene files; null if there is none.
-const char* readingOption(const SceneOptions& given) {
-  const SceneOptions defaults;
-  if (!given.unit.empty()) return "unit";
-  if (given.kd_is_srgb != defaults.kd_is_srgb) return "kd_is_srgb";
-  if (given.default_reflectance != defaults.default_reflectance) return "default_reflectance";
-  if (given.vertex_colours != defaults.vertex_colours) return "vertex_colours";
-  if (given.textures != defaults.textures) return "textures";
-  return nullptr;
+/// The first option given that applies only to scene files; empty if there is none.
+std::string readingOption(const SceneOptions& given) {
+  for (const Option& option : changedOptions(given)) {
+    if (option.line.in_key != InKey::never) return option.line.name;
+  }
+  return {};
 }
 
 /// Judges by the name alone; the reader reports a file with other contents.
 bool isNamedAsResults(const std::string& path) { return lowerExtension(path) == ".h5"; }
 
-bool overrides(const SceneOptions& options) {
-  return !options.set.empty() || !options.materials_file.empty() || !options.one_sided.empty() ||
-         !options.two_sided.empty() || !options.flip.empty() || !options.without.empty() ||
-         !options.lights.empty() || options.up.has_value();
+bool areAny(const SceneOverrides& overrides) {
+  return !changedOptions(overrides).empty() || !overrides.lights.empty();
 }
 
 }  // namespace
@@ -96,7 +93,8 @@ void Pipeline::openSource(const std::string& path) {
 }
 
 void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
-  if (const char* option = readingOption(scene)) {
+  const std::string option = readingOption(scene);
+  if (!option.empty()) {
     throw InputError(fmt::format(
         "{}: {} says how a scene file is read, and this is a results file; give the scene file",
         path, spelled(option)));
@@ -118,10 +116,10 @@ void Pipeline::openResults(const std::string& path, const SceneOptions& scene) {
               options_.journal,
               {}};
   observer_.opened(*this);
-  if (overrides(scene)) overrideScene(scene);
+  if (areAny(scene)) overrideScene(scene);
 }
 
-void Pipeline::overrideScene(const SceneOptions& overrides) {
+void Pipeline::overrideScene(const SceneOverrides& overrides) {
   if (hasOwnMaterials()) {
     throw InputError(fmt::format(
         "{}: holds materials of {} bands, which options that change the scene's colours do not "

@@ -91,6 +91,8 @@ py::list describedLights() {
 
 /// The options of a stage, a dict each: name, value by default, help.
 py::list optionsOf(const std::string& stage) {
+  if (stage == "scene") return described(SceneOptions());
+  if (stage == "overrides") return described(SceneOverrides());
   if (stage == "mesh") return described(MeshOptions());
   if (stage == "form_factors") return described(FormFactorOptions());
   if (stage == "solve") return described(SolveOptions());

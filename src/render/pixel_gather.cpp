@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/option_list.h"
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "render/draw.h"
@@ -13,7 +14,6 @@ namespace radiosity {
 namespace {
 
 constexpr int kFewestRays = 64;
-constexpr int kMostRays = 65536;
 /// A forecast draws only each pixel of this number, across and down.
 constexpr int kForecastStep = 16;
 
@@ -83,13 +83,7 @@ class Gathering {
 
 }  // namespace
 
-void PixelGatherOptions::validate() const {
-  if (rays < kFewestRays || rays > kMostRays) {
-    throw InputError(fmt::format("gathering at pixels: rays is {}; it must lie between {} and {}",
-                                 rays, kFewestRays, kMostRays));
-  }
-  if (!(most_rays >= 1)) throw InputError("gathering at pixels: most_rays must be 1 or more");
-}
+void PixelGatherOptions::validate() const { requireRanges(*this); }
 
 PixelGather gatherRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                            const RenderOptions& options, const PixelGatherOptions& gather,

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include "base/option_list.h"
+#include "radiosity/spelling.h"
 #include "scene/load_scene.h"
 
 namespace radiosity {
@@ -10,19 +12,12 @@ double metresPer(const std::string& unit) {
   if (unit == "m") return 1.0;
   if (unit == "in") return 0.0254;  // exact since 1959
   if (unit == "ft") return 0.3048;
-  throw InputError(fmt::format("unit `{}` is none of mm, cm, m, in, ft", unit));
+  throw InputError(fmt::format("{}: not one of mm, cm, m, in, ft", spelled("unit", unit)));
 }
 
 void SceneOptions::validate() const {
   if (!unit.empty()) metresPer(unit);
-  if (!(default_reflectance >= 0 && default_reflectance <= 1)) {
-    throw InputError(fmt::format("default_reflectance {} is outside 0 to 1", default_reflectance));
-  }
-  // A Texture counts its pixels with an int.
-  if (!(max_image > 0 && max_image <= 2000)) {
-    throw InputError(
-        fmt::format("max image {} is not above 0 and at most 2000 million pixels", max_image));
-  }
+  requireRanges(*this);
   for (const Light& light : lights) light.validate();
 }
 

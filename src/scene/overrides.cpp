@@ -326,8 +326,8 @@ void noteWhiteMaterials(Scene& scene) {
 
 }  // namespace
 
-void applyOverrides(Scene& scene, const SceneOptions& options) {
-  options.validate();
+void applyOverrides(Scene& scene, const SceneOverrides& given) {
+  for (const Light& light : given.lights) light.validate();
   FaceEdits edits(scene);
   // We change a copy, so that a failing override leaves the caller's scene unchanged.
   std::vector<Material> materials = scene.materials;
@@ -335,24 +335,24 @@ void applyOverrides(Scene& scene, const SceneOptions& options) {
   std::vector<Note> notes = scene.notes;
   try {
     Overrides overrides(scene);
-    if (!options.materials_file.empty()) overrides.readMaterialsFile(options.materials_file);
-    for (const std::string& text : options.set) applySet(text, overrides);
-    for (const std::string& name : options.one_sided) {
+    if (!given.materials_file.empty()) overrides.readMaterialsFile(given.materials_file);
+    for (const std::string& text : given.set) applySet(text, overrides);
+    for (const std::string& name : given.one_sided) {
       overrides.setSides(name, false, {spelled("one_sided", name)});
     }
-    for (const std::string& name : options.two_sided) {
+    for (const std::string& name : given.two_sided) {
       overrides.setSides(name, true, {spelled("two_sided", name)});
     }
-    for (const std::string& name : options.flip) {
+    for (const std::string& name : given.flip) {
       edits.flip(name, overrides.surfacesOf(name, {spelled("flip", name)}));
     }
-    for (const std::string& name : options.without) {
+    for (const std::string& name : given.without) {
       edits.leaveOut(name, overrides.surfacesOf(name, {spelled("without", name)}));
     }
     edits.requireFaces();
     overrides.noteRounding();
-    for (const Light& light : options.lights) overrides.replace(light);
-    if (options.up) scene.up = *options.up;
+    for (const Light& light : given.lights) overrides.replace(light);
+    if (given.up) scene.up = *given.up;
   } catch (...) {
     scene.materials = std::move(materials);
     scene.surfaces = std::move(surfaces);

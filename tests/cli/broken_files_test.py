@@ -232,7 +232,7 @@ class Images(FileTest):
         self.assertIn("1 texture read", self.passes("info", name))
         self.assertIn("has 40 x 50 pixels, --max-image allows 0.001 million",
                       self.passes("info", name, "--max-image", "0.001"))
-        self.says("--max-image: max image 0 is not above 0 and at most 2000 million pixels", "info", name,
+        self.says("--max-image: 0 megapixels is out of range; above 0 and at most 2000", "info", name,
                   "--max-image", "0")
 
     def test_the_limit_holds_for_compared_pictures(self):

@@ -102,9 +102,9 @@ class BadArguments(CliTest):
                 (["info", "box.obj", "--unit", "ell"], ["--unit", "mm"]),
                 (["info", "box.obj", "--default-reflectance", "2"], ["default-reflectance"]),
                 (["info", "box.obj", "--default-reflectance", "1e999"],
-                 ["--default-reflectance: '1e999' is not a number"]),
+                 ["--default-reflectance: `1e999` is not a number"]),
                 (["info", "box.obj", "--default-reflectance", "nan"],
-                 ["--default-reflectance: 'nan' is not a number"]),
+                 ["--default-reflectance: nan is out of range; 0 to 1"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse(*arguments, words=words)

@@ -80,7 +80,7 @@ def ones(F):
     (lambda F: rad.from_csr([[0, 1], [1, 0]], [1, -1]), "^area: row 1 is -1.0; give 0 or more"),
     (lambda F: rad.load(""), "^path: is ''; give the path of a file"),
     (lambda F: rad.load("a\0b"), "^path: is 'a.x00b'; give the path of a file"),
-    (lambda F: rad.load(CORNELL, default_reflectance=2), "^default_reflectance 2 is outside 0 to 1"),
+    (lambda F: rad.load(CORNELL, default_reflectance=2), "^default_reflectance: 2 is out of range; 0 to 1"),
     (lambda F: rad.mesh(F.mesh.scene, max_edge=-1), "^max_edge: -1 m is out of range"),
     (lambda F: rad.load(CORNELL, kd_is_srgb="yes"), "^kd_is_srgb: is 'yes' of type str; give True or False"),
     (lambda F: rad.load(CORNELL, default_reflectance="x"), "^default_reflectance: is 'x' of type str"),

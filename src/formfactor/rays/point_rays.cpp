@@ -83,10 +83,7 @@ HemisphereSet::Turn HemisphereSet::turnAt(const Vec3& place, std::uint64_t seed)
   Hash hash;
   hash.bytes(&place, sizeof place);
   hash.bytes(&seed, sizeof seed);
-  std::uint64_t bits = hash.value();
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ull;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebull;
-  bits ^= bits >> 31;
+  const std::uint64_t bits = mixed(hash.value());
   return {bits % sets_, 2 * std::numbers::pi * double(bits >> 11) * 0x1p-53};
 }
 

@@ -1,5 +1,6 @@
 #include "formfactor/rays/sobol.h"
 
+#include "base/hash.h"
 #include "formfactor/rays/ray_kernels.h"
 
 namespace radiosity {
@@ -23,12 +24,9 @@ std::uint32_t reverseBits(std::uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
-/// Well-mixed bits of seed and dimension (the finaliser of SplitMix64, Steele et al. 2014).
-std::uint32_t mixed(std::uint64_t seed, std::uint64_t dimension) {
-  std::uint64_t z = seed + (dimension + 1) * 0x9e3779b97f4a7c15ull;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return std::uint32_t((z ^ (z >> 31)) >> 32);
+/// Well-mixed bits of seed and dimension.
+std::uint32_t bitsOf(std::uint64_t seed, std::uint64_t dimension) {
+  return std::uint32_t(mixed(seed + (dimension + 1) * 0x9e3779b97f4a7c15ull) >> 32);
 }
 
 /// Direction numbers v_k = m_k / 2^(k+1) as 32-bit fractions, by Sobol's recurrence
@@ -79,7 +77,7 @@ void SobolPoints::points(std::uint32_t first, std::size_t count, std::uint64_t s
     for (std::size_t bit = 0; bit < 32; ++bit) {
       if ((first >> bit) & 1u) base ^= direction_[d][bit];
     }
-    kernels.scramble(first_[d].data(), count, base, mixed(seed, d), out[d]);
+    kernels.scramble(first_[d].data(), count, base, bitsOf(seed, d), out[d]);
   }
 }
 

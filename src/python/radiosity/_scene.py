@@ -193,24 +193,16 @@ class Scene(Fixed):
                 f"from {printable(self._handle.file)}>")
 
 
-@takes_options("lights")
-def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
-         kd_is_srgb: bool = False, default_reflectance: float = 0.5,
-         vertex_colours: str = "off", textures: bool = True,
-         set: Union[str, Sequence[str]] = (),
+@takes_options("scene", "overrides", "lights")
+def load(path: Union[str, "os.PathLike[str]"], *,
          materials_file: Union[None, str, "os.PathLike[str]"] = None,
-         one_sided: Union[str, Sequence[str]] = (), two_sided: Union[str, Sequence[str]] = (),
-         flip: Union[str, Sequence[str]] = (), without: Union[str, Sequence[str]] = (),
-         sky: Any = None, **lights: Any) -> Scene:
+         sky: Any = None, **others: Any) -> Scene:
     """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
 
-    unit: mm, cm, m, in or ft (default metres). vertex_colours: off, linear or srgb, how those of
-    formats that do not say it count as reflectance. set: "NAME.PROPERTY=VALUE" each, with PROPERTY
-    reflectance, emission (W/m^2), radiance (W/m^2/sr) or tint. NAME, and those of one_sided,
-    two_sided, flip (turned over) and without (left out), are names of materials, objects or
-    surfaces, patterns ("*wall*"), or "all". Each of the five is a list, or one text. sky: radiance,
-    W/m^2/sr, one number or three. The options are those of the command line. What was repaired is
-    in Scene.notes, and said by UserWarnings.
+    Options that may be repeated are lists, or one text; set="lamp.emission=100". NAMEs are those of
+    materials, objects or surfaces, patterns ("*wall*"), or "all". sky: radiance, W/m^2/sr, one
+    number or three. The options are those of the command line. What was repaired is in Scene.notes,
+    and said by UserWarnings.
 
     The scene's arrays are views of what was read, no copies.
 
@@ -219,13 +211,14 @@ def load(path: Union[str, "os.PathLike[str]"], *, unit: Optional[str] = None,
     >>> rad.load("data/cornell-box.obj", set=["white.reflectance=0.9"])
     <Scene of 18 faces on 8 surfaces from data/cornell-box.obj>
     """
-    materials_path = None if materials_file is None else path_text("materials_file", materials_file)
-    options = dict(unit=unit, kd_is_srgb=kd_is_srgb, default_reflectance=default_reflectance,
-                   vertex_colours=vertex_colours,
-                   textures=textures, set=texts("set", set), materials_file=materials_path,
-                   one_sided=texts("one_sided", one_sided), two_sided=texts("two_sided", two_sided),
-                   flip=texts("flip", flip), without=texts("without", without),
-                   lights=_lights(dict(sky=sky, **more("lights", lights, "load"))))
-    scene = Scene._of(_core.load(path_text("path", path), options))
+    lights = {light["name"] for light in _core.options("lights")}
+    lists = {option["name"] for option in _core.options("overrides") if isinstance(option["value"], list)}
+    options = more(("scene", "overrides", "lights"), others, "load")
+    given = {name: texts(name, value) if name in lists else value
+             for name, value in options.items() if name not in lights}
+    if materials_file is not None:
+        given["materials_file"] = path_text("materials_file", materials_file)
+    given["lights"] = _lights({"sky": sky, **{name: options[name] for name in lights & options.keys()}})
+    scene = Scene._of(_core.load(path_text("path", path), given))
     tell(scene.notes)
     return scene

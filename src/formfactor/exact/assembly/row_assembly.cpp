@@ -8,6 +8,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "base/hash.h"
 #include "base/processor_clock.h"
 
 namespace radiosity {
@@ -38,13 +39,9 @@ class ProcessorTime {
   double start_;
 };
 
-/// A number of the pair that looks random and depends on nothing but the pair (SplitMix64, Steele,
-/// Lea & Flood 2014).
+/// A number of the pair that looks random and depends on nothing but the pair.
 std::uint64_t pairHash(Index row, Index column) {
-  std::uint64_t z = ((std::uint64_t(row) << 32U) | column) + 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31U);
+  return mixed(((std::uint64_t(row) << 32U) | column) + 0x9e3779b97f4a7c15ULL);
 }
 
 }  // namespace
