@@ -83,8 +83,8 @@ struct JournalOptions {
   static void describe(auto& list, auto& o) {
     list({.name = "resume",
           .help = "Keep rows in OUT.h5.rows as they are computed, and go on from those that a run "
-                  "which was broken off has left; --no-resume: begin anew (default: resume, and "
-                  "keep rows where they are foreseen to take {:g} s; given, always)",
+                  "which was broken off has left; or begin anew (default: resume, and keep rows "
+                  "where they are foreseen to take {:g} s; given, always)",
           .figures = {JournalOptions().from_seconds},
           .in_key = InKey::never},
          o.resume);

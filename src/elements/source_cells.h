@@ -26,7 +26,7 @@ class SourceCells {
   static constexpr double kCellEdge = 0.005;
   static constexpr int kMostSide = 32;
   /// Of all roots, besides one each: cells are made longer until they are no more.
-  static constexpr std::size_t kMostCells = std::size_t(1) << 20;
+  static constexpr std::size_t kMostCells = std::size_t(1) << 21;
 
   SourceCells(const ElementSurface& surface, const ElementLookup& lookup, int bands);
 
