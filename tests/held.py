@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The account of what was tried and held: held.csv, and the table that README.md shows of it.
 
-    tests/held.py add WHAT COUNT UNIT FAULTS [NOTE]   a line of today, of the commit checked out
+    tests/held.py add WHAT COUNT UNIT FAULTS [NOTE]   a line of today, of the commit checked out; the
+                                                      note is a few words, as the table shows it
     tests/held.py table                               makes the table in README.md anew
 """
 import csv
@@ -14,6 +15,7 @@ FOLDER = pathlib.Path(__file__).resolve().parent
 LINES = FOLDER / "held.csv"
 README = FOLDER / "README.md"
 BEGIN, END = "<!-- held: made by tests/held.py -->", "<!-- held: end -->"
+LONGEST_NOTE = 40  # so that a line of the table fits README.md
 COLUMNS = ["date", "commit", "what", "count", "unit", "faults", "note"]
 
 
@@ -23,6 +25,8 @@ def lines():
 
 
 def add(what, count, unit, faults, note=""):
+    if len(note) > LONGEST_NOTE:
+        sys.exit(f"held.py: the note has {len(note)} characters; at most {LONGEST_NOTE} fit the table")
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=FOLDER, check=True,
                             capture_output=True, text=True).stdout.strip()
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
