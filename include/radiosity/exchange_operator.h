@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,15 @@ class ExchangeOperator {
   virtual std::vector<double> row(std::size_t i) const = 0;  ///< N values
   virtual double at(std::size_t i, std::size_t j) const;     ///< F_ij
   virtual std::vector<double> dense() const;                 ///< N x N, row-major
+  /// Whether no F_ij is below 0, as it is of all but fits to the light of many patches at once.
+  virtual bool isNonNegative() const { return true; }
+  /// sum_j |F_ij|, or a bound of it: N.
+  virtual std::vector<double> rowNorms() const { return rowSums(); }
+  /// About the relative error (L2, by area) of F x, N * bands, where the operator knows it of a
+  /// field; nothing if it does not, or if F x is 0.
+  virtual std::optional<double> relativeError(std::span<const double> /*x*/, int /*bands*/) const {
+    return std::nullopt;
+  }
 
   /// Whether sweep() works.
   virtual bool sweeps() const { return false; }

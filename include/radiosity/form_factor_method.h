@@ -18,6 +18,7 @@ enum class FormFactorMethod {
   automatic,  ///< exact or rays, as a sample of rows decides; the report says why
   exact,      ///< area to area, with blocked parts clipped off
   rays,       ///< area to area, by counting cosine-distributed rays
+  cut,        ///< the same without pairs: rows cut through a tree of patches
   hemicube,   ///< seen from one eye at each patch's centroid (Cohen & Greenberg 1985)
   matrix,     ///< given as a matrix (factorsOfMatrix())
   file        ///< read from a file of form factors alone (factorsOfFile())
@@ -34,6 +35,8 @@ struct MethodTraits {
   /// Rows are of unknowns, made by process 0 out of what all processes count. Others make rows of
   /// patches, each in one process, and sum them over clusters.
   bool counts_unknowns = false;
+  /// Whether several processes can make its rows and hold them.
+  bool is_shareable = true;
   /// The share of its light that an energy account may be off, and the cure if it is off by more.
   double imbalance = std::numeric_limits<double>::infinity();
   std::string (*cure)() = [] { return std::string(); };
@@ -73,6 +76,20 @@ inline constexpr std::array kMethods{
                      [] {
                        return "give a smaller " + spelled("tolerance") + ", or " +
                               spelled("method", "exact");
+                     }},
+    MethodTraits{.method = FormFactorMethod::cut,
+                 .word = "cut",
+                 .summary = "by rays, without pairs: rows cut through a tree of many patches",
+                 .options = {"tolerance", "seed"},
+                 .tolerance = 2e-2,
+                 .symmetric = false,
+                 .counts_unknowns = true,
+                 .is_shareable = false,
+                 .imbalance = 0.005,
+                 .cure =
+                     [] {
+                       return "give a smaller " + spelled("tolerance") + ", or " +
+                              spelled("method", "rays");
                      }},
     // A patch is represented by a point: form factors are off by 8% to 30%
     // (src/formfactor/README.md), and an account sums over many of them.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,7 +55,8 @@ struct FormFactorOptions {
   /// 1/N; it keeps the relative error (L2) of a row below it, mostly far below. Closed forms hold
   /// it, or 1e-5 if that is smaller, relative to each value; above kExactTolerance, a tenth of it.
   /// Rays: the error (L2) of a row over its norm, or over the area-weighted root mean square of all
-  /// norms if that is larger; so the relative error of the matrix is below it. Empty: the method's
+  /// norms if that is larger; so the relative error of the matrix is below it. Cut: the error (L2,
+  /// by area) of irradiance, over all of it, under trial lights of the scene. Empty: the method's
   /// default; rays then stop at kMostRaysUnasked, since a row of an open scene may see next to
   /// nothing and would want a thousand times those of a closed one.
   std::optional<double> tolerance;
@@ -91,6 +93,7 @@ struct FormFactorOptions {
 
   static constexpr double kExactTolerance = traitsOf(FormFactorMethod::exact).tolerance;
   static constexpr double kRayTolerance = traitsOf(FormFactorMethod::rays).tolerance;
+  static constexpr double kCutTolerance = traitsOf(FormFactorMethod::cut).tolerance;
   static constexpr double kSourceTolerance = 3e-2;
   static constexpr double kSourceSky = 0.1;
   /// About half a minute on two cores.
@@ -113,8 +116,8 @@ struct FormFactorOptions {
           .value = "FRACTION",
           .help = "exact: error aimed at for an occluded pair, relative to the mean form factor "
                   "1/N (default {:g}); rays: relative error of a row, L2 (default {:g}, or what "
-                  "{:g} million rays reach)",
-          .figures = {kExactTolerance, kRayTolerance, 1e-6 * kMostRaysUnasked},
+                  "{:g} million rays reach); cut: relative error of irradiance (default {:g})",
+          .figures = {kExactTolerance, kRayTolerance, 1e-6 * kMostRaysUnasked, kCutTolerance},
           .unset = o.sources_only ? "sources" : "default"},
          o.tolerance, {.from = 1e-12, .to = 0.1});
     list(
@@ -308,6 +311,38 @@ struct RayReport {
   }
 };
 
+/// Counts, errors and times of rows that are cut.
+struct CutReport {
+  std::size_t triangles = 0;
+  std::size_t rays = 0;        ///< cast in total
+  std::size_t leaked = 0;      ///< of these, not counted: they left patches that are enclosed
+  std::size_t rays_a_row = 0;
+  std::size_t entries = 0;     ///< of all rows: a node of the tree each
+  double opening = 0;          ///< the most radius of a node over its distance
+  /// Relative errors of irradiance (L2, by area) of rows that were tried under some suns or lamps
+  /// and their shadows: by rays, and by cutting.
+  double noise = 0;
+  double bias = 0;
+  double seconds_prepare = 0;  ///< by the clock: the trees and the exact rows
+  double seconds_rows = 0;
+
+  /// Of irradiance, under the trial lights.
+  double error() const { return std::hypot(noise, bias); }
+
+  static void describe(auto& list, auto& r) {
+    list({"triangles", "triangles"}, r.triangles);
+    list({"rays", "rays"}, r.rays);
+    list({"leaked", "  leaked out, not counted", "", "rays_leaked"}, r.leaked);
+    list({"rays_a_row", "  a row"}, r.rays_a_row);
+    list({"entries", "nodes in rows"}, r.entries);
+    list({"opening", "  radius over distance up to"}, r.opening);
+    list({"noise", "irradiance off by: rays"}, r.noise);
+    list({"bias", "irradiance off by: cutting"}, r.bias);
+    list({"seconds_prepare", "time: preparing", "s"}, r.seconds_prepare);
+    list({"seconds_rows", "time: rows", "s"}, r.seconds_rows);
+  }
+};
+
 /// Counts of hemicubes, summed over them and, of polygons, over their faces.
 struct HemicubeReport {
   std::size_t hemicubes = 0;
@@ -377,6 +412,7 @@ struct FormFactorReport {
   // Of the method that ran:
   ExactReport exact;
   RayReport rays;
+  CutReport cut;
   HemicubeReport hemicube;
   std::vector<Note> notes;  ///< surfaces seen from behind, ...
 
@@ -394,6 +430,7 @@ struct FormFactorReport {
     list({"polygons", "planar polygons"}, r.polygons);
     list.part("exact", r.exact);
     list.part("rays", r.rays);
+    list.part("cut", r.cut);
     list({"closed", "closed scene"}, r.closed);
     list({"error_figure"}, r.error_figure);
     list({"largest_row_error"}, r.largest_row_error);

@@ -38,7 +38,7 @@ struct OptionLine {
   const char* value = "N";  ///< what the command line's help calls the value; "SIZE": bytes, or 2G
   const char* unit = "";
   const char* help = "";  ///< a sentence; empty: the command line does not have the option
-  std::array<double, 3> figures{};  ///< for {} in the sentence
+  std::array<double, 4> figures{};  ///< for {} in the sentence
   bool used = true;                 ///< false: the other options make it of no effect
   InKey in_key = InKey::always;
   const char* unset = "default";  ///< the word for an empty value

@@ -15,7 +15,8 @@ enum class RowBlock : std::uint32_t {
   exact_task = 1,  ///< rows of one task of the exact method, and its sums
   row = 2,         ///< one row
   ray_round = 3,   ///< how many rays each row gets by the end of a round, and why
-  ray_row = 4      ///< the counts of one row at the end of a round
+  ray_row = 4,     ///< the counts of one row at the end of a round
+  cut_rows = 5     ///< some neighbouring rows, cut through a tree
 };
 
 /// Keeps the rows that computeFormFactors() has computed, in blocks of bytes with a kind and a

@@ -127,6 +127,8 @@ struct SceneOverrides {
   std::vector<std::string> without;    ///< their faces are left out
   std::optional<Up> up;                ///< replaces Scene::up, which depends on the format
   std::vector<Light> lights;           ///< each replaces that of its name in Scene::lights
+  /// Throws InputError unless all lights are in range.
+  void validate() const;
 
   /// A line an option (option_line.h), but for lights.
   static void describe(auto& list, auto& o) {

@@ -122,6 +122,9 @@ struct SolveSummary {
   /// w_i max_k |r_k| / ((I - rho F) w)_k for a vector w > 0 with (I - rho F) w > 0. Empty: no such
   /// vector was found, "no certificate".
   std::optional<double> error_bound;
+  /// About the relative error (L2, by area) of the irradiance, where the form factors know it of
+  /// this light.
+  std::optional<double> irradiance_error;
   EnergyAccount energy;
   double seconds = 0;
   /// Relative, one an iteration; the last entry is always the true residual. Before that, Jacobi
@@ -142,6 +145,7 @@ struct SolveSummary {
     list.part("skipped", s.skipped);
     list({"residual", "residual (relative)"}, s.residual);
     list({"error_bound"}, s.error_bound);
+    list({"irradiance_error", "irradiance off by about"}, s.irradiance_error);
     list({"residual_history"}, s.residual_history);
     list({"seconds", "time", "s"}, s.seconds);
     list.part("energy", s.energy);

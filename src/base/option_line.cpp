@@ -53,8 +53,8 @@ std::string OptionLine::optionName() const {
 }
 
 std::string OptionLine::helpText(const OptionRange& range) const {
-  const auto& [a, b, c] = figures;
-  const std::string sentence = fmt::format(fmt::runtime(help), a, b, c);
+  const auto& [a, b, c, d] = figures;
+  const std::string sentence = fmt::format(fmt::runtime(help), a, b, c, d);
   return range.ends() ? sentence + "; " + range.text() : sentence;
 }
 

@@ -29,6 +29,11 @@ std::string briefLine(const FormFactors& factors) {
                        countText(r.rays.rays), durationText(r.seconds), bytesText(r.matrix_bytes),
                        scene, numberText(r.error_figure, 2));
   }
+  if (factors.method == FormFactorMethod::cut) {
+    return fmt::format("{} rays in {}; {}; {}; irradiance off by about {}", countText(r.cut.rays),
+                       durationText(r.seconds), bytesText(r.matrix_bytes), scene,
+                       numberText(r.cut.error(), 2));
+  }
   const std::string what = factors.method == FormFactorMethod::hemicube
                                ? plural(r.hemicube.hemicubes, "hemicube", "hemicubes")
                                : nameOf(kFactorsFromNames, factors.method);
@@ -63,6 +68,9 @@ void methodFigures(Report& report, const FormFactors& factors) {
     r.exact.describe(lines, r.exact);
   } else if (factors.method == FormFactorMethod::rays) {
     rayFigures(report, r.rays);
+  } else if (factors.method == FormFactorMethod::cut) {
+    FieldLines lines(report);
+    r.cut.describe(lines, r.cut);
   } else if (factors.method == FormFactorMethod::hemicube) {
     hemicubeFigures(report, r);
   }

@@ -2,6 +2,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "formfactor/cut/cut_factors.h"
 #include "formfactor/exact/assembly/exact_factors.h"
 #include "formfactor/hemicube/hemicube_factors.h"
 #include "formfactor/method.h"
@@ -17,6 +18,7 @@ struct MethodEntry {
 
 constexpr std::array kEntries{MethodEntry{FormFactorMethod::exact, &prepareExact},
                               MethodEntry{FormFactorMethod::rays, &prepareRays},
+                              MethodEntry{FormFactorMethod::cut, &prepareCut},
                               MethodEntry{FormFactorMethod::hemicube, &prepareHemicubes}};
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "matrix/sort_entries.h"
 #include "radiosity/row_matrix.h"
 #include "radiosity/symmetric_matrix.h"
+#include "results/cut_rows.h"
 #include "results/matrix_blocks.h"
 
 namespace radiosity {
@@ -235,11 +236,7 @@ void readSymmetric(const h5::InputGroup& group, const StoredRows& rows, Symmetri
   readTriangle<T>(group, rows, matrix.order(), store);
 }
 
-}  // namespace
-
-std::shared_ptr<const ExchangeMatrix> readMatrix(const h5::InputGroup& group,
-                                                 std::shared_ptr<ScratchMemory> scratch,
-                                                 const MatrixPart& part) {
+std::vector<double> readAreas(const h5::InputGroup& group) {
   std::size_t n = 0;
   const h5::Handle area_set = group.open("area", Number::f64, 0, n);
   std::vector<double> area(n);
@@ -247,6 +244,26 @@ std::shared_ptr<const ExchangeMatrix> readMatrix(const h5::InputGroup& group,
   for (const double a : area) {
     if (!(a >= 0) || !std::isfinite(a)) group.fail("area", fmt::format("holds the area {}", a));
   }
+  return area;
+}
+
+std::shared_ptr<const RowMatrix> readRowMatrix(const h5::InputGroup& group, const StoredRows& rows,
+                                               std::vector<double> area,
+                                               std::shared_ptr<ScratchMemory> scratch) {
+  const bool single = rows.number == Number::f32;
+  const auto matrix = std::make_shared<RowMatrix>(
+      std::move(area), single ? Precision::single_precision : Precision::double_precision,
+      std::move(scratch));
+  single ? readByRows<float>(group, rows, *matrix) : readByRows<double>(group, rows, *matrix);
+  return matrix;
+}
+
+/// The rows of `part`; all others are empty.
+std::shared_ptr<const ExchangeMatrix> readPairs(const h5::InputGroup& group,
+                                                std::shared_ptr<ScratchMemory> scratch,
+                                                const MatrixPart& part) {
+  std::vector<double> area = readAreas(group);
+  const std::size_t n = area.size();
   StoredRows rows = openRows(group, n);
   rows.choose(part);
   const bool single = rows.number == Number::f32;
@@ -258,9 +275,24 @@ std::shared_ptr<const ExchangeMatrix> readMatrix(const h5::InputGroup& group,
            : readSymmetric<double>(group, rows, *matrix);
     return matrix;
   }
-  const auto matrix = std::make_shared<RowMatrix>(std::move(area), precision, std::move(scratch));
-  single ? readByRows<float>(group, rows, *matrix) : readByRows<double>(group, rows, *matrix);
-  return matrix;
+  return readRowMatrix(group, rows, std::move(area), std::move(scratch));
+}
+
+}  // namespace
+
+std::shared_ptr<const ExchangeOperator> readMatrix(const h5::InputGroup& group,
+                                                   std::shared_ptr<ScratchMemory> scratch) {
+  if (!group.has(kCutGroup)) return readPairs(group, std::move(scratch), {});
+  std::vector<double> area = readAreas(group);
+  const h5::InputGroup cut = group.group(kCutGroup);
+  CutParts parts = readCut(cut, area);
+  if (cut.has(kPairsGroup)) {
+    const h5::InputGroup pairs = cut.group(kPairsGroup);
+    StoredRows rows = openRows(pairs, area.size());
+    rows.choose({});
+    parts.pairs = readRowMatrix(pairs, rows, std::move(area), std::move(scratch));
+  }
+  return std::make_shared<CutOperator>(std::move(parts));
 }
 
 std::shared_ptr<const ExchangeMatrix> readMatrixPart(const std::string& path,
@@ -268,7 +300,11 @@ std::shared_ptr<const ExchangeMatrix> readMatrixPart(const std::string& path,
   return h5::readSettled(path, [&] {
     const h5::InputFile file(path);
     file.requireOwnObjects();
-    return readMatrix(h5::InputGroup(file).group("form_factors"), nullptr, part);
+    const h5::InputGroup group = h5::InputGroup(file).group("form_factors");
+    if (group.has(kCutGroup)) {
+      group.fail(kCutGroup, "needs one process: leave out mpirun");
+    }
+    return readPairs(group, nullptr, part);
   });
 }
 

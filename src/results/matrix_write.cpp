@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "matrix/shared_rows.h"
 #include "results/column_writer.h"
+#include "results/cut_rows.h"
 #include "results/matrix_blocks.h"
 
 namespace radiosity {
@@ -233,9 +234,7 @@ void countRows(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
   group.dataset("data", {number, entries, 0}, nullptr, "");
 }
 
-}  // namespace
-
-void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress) {
+void writePairs(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress& progress) {
   group.dataset("area", {Number::f64, matrix.size(), 0}, matrix.area().data(), "m^2");
   if (matrix.isSymmetric()) {
     group.dataset("order", {h5::numberOf<Index>(), matrix.size(), 0}, matrix.order().data(), "");
@@ -245,16 +244,40 @@ void writeMatrix(h5::OutputGroup& group, const ExchangeMatrix& matrix, Progress&
   writeRows(group, matrix, progress);
 }
 
-std::unique_ptr<BlockTaker> makeMatrixBlockWriter(std::span<const std::byte> job) {
-  return std::make_unique<MatrixBlockWriter>(BlocksJob::from(job));
-}
-
-void countMatrix(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
+void countPairs(h5::SizeCounter& group, const ExchangeMatrix& matrix) {
   const std::size_t n = matrix.size();
   group.dataset("area", {Number::f64, n, 0}, nullptr, "m^2");
   if (matrix.isSymmetric()) group.dataset("order", {h5::numberOf<Index>(), n, 0}, nullptr, "");
   group.dataset("row_sum", {Number::f64, n, 0}, nullptr, "");
   countRows(group, matrix);
+}
+
+}  // namespace
+
+void writeMatrix(h5::OutputGroup& group, const ExchangeOperator& matrix, Progress& progress) {
+  const auto* const cut = dynamic_cast<const CutOperator*>(&matrix);
+  if (cut == nullptr) return writePairs(group, pairsOf(matrix), progress);
+  group.dataset("area", {Number::f64, matrix.size(), 0}, matrix.area().data(), "m^2");
+  h5::OutputGroup rows = group.group(kCutGroup);
+  writeCut(rows, *cut, progress);
+  if (!cut->parts().pairs) return;
+  h5::OutputGroup pairs = rows.group(kPairsGroup);
+  writePairs(pairs, *cut->parts().pairs, progress);
+}
+
+std::unique_ptr<BlockTaker> makeMatrixBlockWriter(std::span<const std::byte> job) {
+  return std::make_unique<MatrixBlockWriter>(BlocksJob::from(job));
+}
+
+void countMatrix(h5::SizeCounter& group, const ExchangeOperator& matrix) {
+  const auto* const cut = dynamic_cast<const CutOperator*>(&matrix);
+  if (cut == nullptr) return countPairs(group, pairsOf(matrix));
+  group.dataset("area", {Number::f64, matrix.size(), 0}, nullptr, "m^2");
+  h5::SizeCounter rows = group.group(kCutGroup);
+  countCut(rows, *cut);
+  if (!cut->parts().pairs) return;
+  h5::SizeCounter pairs = rows.group(kPairsGroup);
+  countPairs(pairs, *cut->parts().pairs);
 }
 
 }  // namespace radiosity

@@ -56,7 +56,7 @@ MeshLinks meshLinks(const Results& results) {
 template <class Sink>
 class StageWriter {
  public:
-  using PutMatrix = std::function<void(Sink&, const ExchangeMatrix&)>;
+  using PutMatrix = std::function<void(Sink&, const ExchangeOperator&)>;
 
   StageWriter(Sink& root, const Results& results, std::string suffix = {})
       : root_(root), results_(results), suffix_(std::move(suffix)) {
@@ -90,7 +90,7 @@ class StageWriter {
     for (const auto& [name, source] : meshLinks(results_)) {
       group.link(name, root_, kStage<Stage::mesh>.group + ("/" + std::string(source)));
     }
-    put_matrix_(group, pairsOf(*factors_->matrix));
+    put_matrix_(group, *factors_->matrix);
   }
   /// With the materials, which may be there without a solution.
   void write(const StageOf<Solution>& stage) {
@@ -314,7 +314,7 @@ void writeStages(const std::string& path, const Results& results, const FormFact
   {
     OutputGroup root(file);
     StageWriter<OutputGroup>(root, results)
-        .all(shown, [&](OutputGroup& group, const ExchangeMatrix& matrix) {
+        .all(shown, [&](OutputGroup& group, const ExchangeOperator& matrix) {
           writeMatrix(group, matrix, progress);
         });
   }

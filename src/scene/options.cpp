@@ -18,7 +18,7 @@ double metresPer(const std::string& unit) {
 void SceneOptions::validate() const {
   if (!unit.empty()) metresPer(unit);
   requireRanges(*this);
-  for (const Light& light : lights) light.validate();
+  SceneOverrides::validate();
 }
 
 }  // namespace radiosity

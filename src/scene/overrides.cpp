@@ -326,8 +326,12 @@ void noteWhiteMaterials(Scene& scene) {
 
 }  // namespace
 
+void SceneOverrides::validate() const {
+  for (const Light& light : lights) light.validate();
+}
+
 void applyOverrides(Scene& scene, const SceneOverrides& given) {
-  for (const Light& light : given.lights) light.validate();
+  given.validate();
   FaceEdits edits(scene);
   // We change a copy, so that a failing override leaves the caller's scene unchanged.
   std::vector<Material> materials = scene.materials;

@@ -45,10 +45,20 @@ std::optional<double> boundFrom(const System& system, const Fields& fields, cons
 // The all-ones vector costs one product and serves wherever every rho_i rowsum_i < 1. Otherwise w
 // is a rough solution of M w = 1: if 1 - M w is within 0.1, then v = M w >= 0.9 > 0. The products
 // with the first w and the last are worth a sweep each.
+//
+// Where some F_ij are below 0, |F| takes the place of F in M and v: it is an H-matrix, whose inverse
+// is within that of its comparison matrix (Ostrowski 1937). Of |F| the sums of rows are known.
 std::optional<double> certifiedErrorBound(const System& system, const Fields& fields,
                                           int max_sweeps, Progress& progress) {
   const std::vector<double> ones(fields.radiosity.size(), 1.0);
   Fields trial{ones, ones};
+  if (!system.matrix.isNonNegative()) {
+    const std::vector<double> norms = system.matrix.rowNorms();
+    for (std::size_t k = 0; k < trial.irradiance.size(); ++k) {
+      trial.irradiance[k] = norms[k / std::size_t(system.bands)];
+    }
+    return boundFrom(system, fields, trial);
+  }
   system.matrix.product(trial.radiosity, system.bands, trial.irradiance, system.reflecting);
   if (const auto bound = boundFrom(system, fields, trial)) return bound;
   if (max_sweeps < 3) return std::nullopt;

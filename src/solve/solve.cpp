@@ -141,6 +141,11 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   if (summary.usable() && factors.seeNothing()) {
     summary.message += fmt::format("; {}", factors.condition());
   }
+  summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
+  if (summary.usable() && summary.irradiance_error) {
+    summary.message +=
+        fmt::format("; irradiance off by about {:.2g}%", 100 * *summary.irradiance_error);
+  }
   for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
   summary.energy = energyAccount(factors, reflectance, {emission, by_lights}, solution.radiosity,
                                  solution.irradiance, bands);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "matrix/cut_sample.h"
 #include "radiosity/matrix_functions.h"
 #include "results_sample.h"
 #include "support/results_folder.h"
@@ -60,6 +61,27 @@ TEST_F(ResultsFile, GivesBackClustersWithARowForEach) {
     EXPECT_TRUE(sample::same(written, readResults(file())));
     EXPECT_NEAR(double(estimateResultsBytes(written)), double(std::filesystem::file_size(file())),
                 4096);
+  }
+}
+
+TEST_F(ResultsFile, GivesBackRowsThatAreCut) {
+  for (const bool with_pairs : {true, false}) {
+    // A few patches in their headers; enough that rows take several chunks and blocks.
+    for (const Index side : {3u, 30u}) {
+      Results written = sample::results(side, Precision::single_precision);
+      CutParts parts = test::randomCut(written.factors->fronts.size(), 1);
+      if (!with_pairs) parts.pairs.reset();
+      written.factors->matrix = std::make_shared<CutOperator>(parts);
+      write(written);
+      const Results read = readResults(file());
+      const auto& found = dynamic_cast<const CutOperator&>(*read.factors->matrix);
+      EXPECT_EQ(found.parts().bias, parts.bias);
+      EXPECT_EQ(found.parts().area, parts.area);
+      EXPECT_EQ(found.dense(), written.factors->matrix->dense());
+      EXPECT_EQ(found.rowNorms(), written.factors->matrix->rowNorms());
+      EXPECT_NEAR(double(estimateResultsBytes(written)),
+                  double(std::filesystem::file_size(file())), 8192);
+    }
   }
 }
 

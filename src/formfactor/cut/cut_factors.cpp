@@ -1,0 +1,208 @@
+#include "formfactor/cut/cut_factors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "base/figure_text.h"
+#include "base/made.h"
+#include "base/parallel.h"
+#include "base/processor_clock.h"
+#include "formfactor/closed_rows.h"
+#include "formfactor/cut/cut_blocks.h"
+#include "formfactor/cut/cut_plan.h"
+#include "formfactor/row_accounts.h"
+#include "radiosity/spelling.h"
+
+namespace radiosity {
+namespace {
+
+/// Of the rays of a closed row a share this large may slip between faces, which meet but for
+/// rounding.
+constexpr double kMostLeaks = 1e-3;
+/// Exact rows may be this much work for each ray: about half of what it takes.
+constexpr double kExactRowWork = 7;
+/// Bytes of an entry, a node in the tree with its patch, and an account.
+constexpr double kEntryBytes = sizeof(Index) + sizeof(CutRows::Hits) + sizeof(CutRows::Place);
+constexpr std::size_t kTreeBytes =
+    sizeof(PatchTree::Patch) + 2 * sizeof(PatchTree::Node) + sizeof(PatchTree::Fit);
+constexpr std::size_t kAccountBytes = sizeof(CutCounts) + 8 * sizeof(double);
+
+/// The known form factors of all rows; null if there are none.
+std::shared_ptr<const RowMatrix> knownPairs(const RayScene& scene, const KnownEntries& known,
+                                            const std::vector<double>& area, Precision precision) {
+  if (known.empty()) return nullptr;
+  auto pairs = std::make_shared<RowMatrix>(area, precision);
+  for (std::size_t k = 0; k < scene.size(); ++k) {
+    std::vector<std::pair<Index, double>> entries;
+    for (const KnownEntries::Entry& entry : known.at(k)) {
+      const double factor = entry.exchange / scene.area()[k];
+      if (factor > 0) entries.emplace_back(scene.order()[entry.position], factor);
+    }
+    std::ranges::sort(entries);
+    std::vector<Index> columns;
+    std::vector<double> values;
+    for (const auto& [column, value] : entries) {
+      columns.push_back(column);
+      values.push_back(value);
+    }
+    pairs->setRow(scene.order()[k], columns, values);
+  }
+  return pairs;
+}
+
+class Cut final : public PreparedMethod {
+ public:
+  Cut(const PatchMesh& mesh, const FormFactorOptions& options)
+      : PreparedMethod(FormFactorMethod::cut, mesh, options) {}
+  std::optional<RoomForExactRows> roomForExactRows() const override {
+    return RoomForExactRows{kExactRowWork * kReplicates * plan_.rays * double(made(scene_).size()),
+                            bytes_};
+  }
+
+ private:
+  Cost foresee(Progress& progress) override;
+  FormFactors make(KnownRows exact, const RowRun& run) const override;
+  std::shared_ptr<const ExchangeMatrix> share(const RowRun& run) const override;
+
+  std::optional<RayScene> scene_;
+  CutPlan plan_;
+  std::size_t bytes_ = 0;
+};
+
+Cut::Cost Cut::foresee(Progress& progress) {
+  progress.begin("preparing", 1);
+  const Stopwatch watch;
+  scene_.emplace(mesh(), options().seed);
+  // Rows that will be exact are no part of the tree that is used; a few more do no harm here.
+  const PatchTree tree = treeOfUnknowns(mesh(), *scene_, {});
+  seconds_preparing_ = watch.seconds();
+  progress.advance();
+  progress.end();
+  progress.begin("planning", 1);
+  plan_ = planCuts(*scene_, tree, tolerance(), options().seed, progress);
+  progress.end();
+  const std::size_t n = scene_->size();
+  Cost cost;
+  cost.plan.seconds = plan_.seconds * double(n) / double(allowedThreads());
+  cost.plan.tolerance = std::hypot(plan_.noise, plan_.bias);
+  cost.plan.matrix_bytes = std::size_t(double(n) * plan_.entries * kEntryBytes) + n * kTreeBytes;
+  bytes_ = options().memory_held + scene_->bytes() + cost.plan.matrix_bytes + n * kAccountBytes;
+  cost.memory.bytes = bytes_;
+  return cost;
+}
+
+/// Fills in the accounts of a row, and returns what a hit of it counts. Known entries replace the
+/// rays that ended there; all others share the rest of the row.
+double setAccount(const CutCounts& counts, double known_share, bool closed, std::size_t row,
+                  FormFactors& result, std::vector<SeenBack>& seen) {
+  const double sky = closed ? 0.0 : counts.sky;
+  const double counted = counts.rays - (counts.sky - sky) - counts.known;
+  const double each = counted > 0 ? std::max(0.0, 1 - known_share) / counted : 0.0;
+  double on_backs = 0;
+  for (const SeenBack& back : counts.backs) {
+    on_backs += back.share;
+    seen.push_back({back.surface, back.share * each});
+  }
+  result.backs[row] = on_backs * each;
+  result.sky[row] = sky * each;
+  result.fronts[row] = known_share + (counted - sky - on_backs) * each;
+  return each;
+}
+
+void noteShort(const CutPlan& plan, double tolerance, FormFactorReport& report) {
+  const double error = std::hypot(plan.noise, plan.bias);
+  if (!plan.is_lit) {
+    report.notes.push_back({Severity::info,
+                            "rows that were tried see next to nothing that light falls on: the "
+                            "error of irradiance is not known"});
+  } else if (error > tolerance) {
+    report.notes.push_back(
+        {Severity::warning,
+         fmt::format("irradiance is right to about {:.2g}, not to {:.2g}: rows stopped at {} rays; "
+                     "{} or {} comes closer",
+                     error, tolerance, countText(std::size_t(kReplicates) * plan.rays),
+                     spelled("method", "exact"), spelled("method", "rays"))});
+  }
+}
+
+FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
+  const Stopwatch watch;
+  const RayScene& scene = made(scene_);
+  const std::size_t n = scene.size();
+  FormFactors result;
+  FormFactorReport& report = result.report;
+  result.fronts.assign(n, 0.0);
+  result.backs.assign(n, 0.0);
+  result.sky.assign(n, 0.0);
+  std::vector<double> area(n);
+  for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
+  report.empty_rows = std::size_t(std::ranges::count(area, 0.0));
+  report.cut.seconds_prepare = seconds_preparing_ + exact.seconds;
+  const KnownEntries known(std::move(exact.rows), scene.position());
+  CutParts parts;
+  parts.tree = treeOfUnknowns(mesh(), scene, known);
+  const RowCutter cutter(scene, parts.tree, plan_.opening);
+  CutBlocks blocks(cutter, plan_.rays, run.progress);
+  makeAllRows(blocks, run);
+  ClosedRows closed(mesh(), true);
+  std::vector<std::vector<SeenBack>> seen(n);
+  parts.of_a_hit.resize(parts.tree.patches().size());
+  for (std::size_t place = 0; place < parts.of_a_hit.size(); ++place) {
+    const std::size_t k = cutter.positionOf(place);
+    const Index i = scene.order()[k];
+    const CutCounts& counts = blocks.counts()[place];
+    const bool is_closed = closed.keeps(i, counts.rays > 0 ? counts.sky / counts.rays : 0.0,
+                                        kMostLeaks);
+    if (is_closed) report.cut.leaked += std::size_t(counts.sky);
+    parts.of_a_hit[place] = setAccount(counts, known.share(k, scene.area()[k]), is_closed, i,
+                                       result, seen[i]);
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    if (known.rowAt(k) == nullptr) continue;
+    const Index i = scene.order()[k];
+    const RowAccount account = known.account(k, scene.area()[k], closed.closed(i));
+    result.fronts[i] = account.fronts;
+    result.backs[i] = account.backs;
+    result.sky[i] = account.sky;
+    seen[i] = known.rowAt(k)->backs;
+  }
+  closed.report(mesh(), report);
+  closed.balance(result);
+  accountForBacks(mesh(), scene.order(), area, seen, result);
+  parts.pairs = knownPairs(scene, known, area, options().storedPrecision());
+  parts.bias = plan_.bias;
+  parts.blocks = blocks.takeRows();
+  parts.area = std::move(area);
+  CutReport& cut = report.cut;
+  cut.triangles = scene.caster().triangles();
+  cut.rays_a_row = kReplicates * std::size_t(plan_.rays);
+  cut.rays = cut.rays_a_row * parts.tree.patches().size();
+  cut.opening = plan_.opening;
+  cut.noise = plan_.noise;
+  cut.bias = plan_.bias;
+  noteShort(plan_, tolerance(), report);
+  const auto matrix = std::make_shared<CutOperator>(std::move(parts));
+  cut.entries = matrix->entries();
+  cut.seconds_rows = watch.seconds();
+  result.matrix = matrix;
+  return result;
+}
+
+std::shared_ptr<const ExchangeMatrix> Cut::share(const RowRun& /*run*/) const {
+  throw InputError("rows that are cut are made by one process: leave out mpirun");
+}
+
+}  // namespace
+
+std::unique_ptr<PreparedMethod> prepareCut(const PatchMesh& mesh,
+                                           const FormFactorOptions& options) {
+  return std::make_unique<Cut>(mesh, options);
+}
+
+}  // namespace radiosity

@@ -1,0 +1,28 @@
+// How many rays rows need for a tolerance of irradiance, and how far their nodes may be opened:
+// tried on some rows, under lights of the scene's own.
+#pragma once
+
+#include <cstdint>
+
+#include "formfactor/rays/ray_scene.h"
+#include "matrix/patch_tree.h"
+
+namespace radiosity {
+
+struct CutPlan {
+  std::uint32_t rays = 0;  ///< of a row, in each replicate
+  double opening = 0;      ///< RowCutter
+  /// Errors of the irradiance under trial lights, relative (L2, by area): of the rays, and of
+  /// cutting their rows.
+  double noise = 0;
+  double bias = 0;
+  double entries = 0;  ///< of a row
+  double seconds = 0;  ///< a row, of one thread by the clock
+  bool is_lit = false;  ///< whether rows have seen anything that the trial lights shine on
+};
+
+/// `tolerance`: of irradiance. Throws Cancelled.
+CutPlan planCuts(const RayScene& scene, const PatchTree& tree, double tolerance,
+                 std::uint64_t seed, Progress& progress);
+
+}  // namespace radiosity

@@ -1,0 +1,114 @@
+// Patches in a binary tree by place and normal, and the linear fit of a field to these over a node.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "radiosity/base.h"
+
+namespace radiosity {
+
+/// The numbers of a place and of a normal.
+inline constexpr std::size_t kPatchFeatures = 6;
+
+/// One patch a leaf. A node is halved, by number, along that of place and normal over which its
+/// patches spread most.
+class PatchTree {
+ public:
+  /// A place, in any unit and from any origin that leave it some six digits, then a unit normal.
+  using Features = std::array<float, kPatchFeatures>;
+  struct Patch {
+    Features at{};
+    double area = 0;  ///< above 0; the weight of the patch
+    Index patch = 0;
+  };
+  /// Has the patches patches()[begin] to patches()[end - 1]. Nodes are in preorder.
+  struct Node {
+    Index begin = 0;
+    Index end = 0;
+
+    bool isLeaf() const { return end - begin == 1; }
+  };
+  /// Features over an inner node, relative to the node: f = ((place - middle) / radius,
+  /// normal - middle). Their means by area are 0.
+  struct Fit {
+    std::array<double, kPatchFeatures> middle{};
+    double radius = 0;  ///< of the places about the middle
+    /// The inverse of the covariance C of f, a little more than C, row by row. A field B is
+    /// fitted by mean(B) + mean(f B)' C^-1 f.
+    std::array<float, kPatchFeatures * kPatchFeatures> inverse{};
+
+    /// What features are divided by: the radius, and 1 for normals.
+    double unitOf(std::size_t feature) const { return feature < 3 ? radius : 1.0; }
+    /// f of a patch or of the middle of some.
+    std::array<double, kPatchFeatures> relative(const std::array<double, kPatchFeatures>& at) const;
+    /// C^-1 f.
+    std::array<double, kPatchFeatures> solve(const std::array<double, kPatchFeatures>& f) const;
+  };
+
+  PatchTree() = default;
+  /// Sorts the patches. O(n log n).
+  explicit PatchTree(std::vector<Patch> patches);
+  /// Of patches that an earlier tree has sorted.
+  static PatchTree ofSorted(std::vector<Patch> patches);
+
+  std::span<const Patch> patches() const { return patches_; }
+  std::span<const Node> nodes() const { return nodes_; }
+  /// The children of an inner node.
+  std::size_t first(std::size_t node) const { return node + 1; }
+  std::size_t second(std::size_t node) const {
+    const Node& first = nodes_[node + 1];
+    return node + 2 * std::size_t(first.end - first.begin);
+  }
+  /// Of an inner node.
+  const Fit& fit(std::size_t node) const { return fits_[node - nodes_[node].begin]; }
+  std::size_t bytes() const {
+    return patches_.size() * sizeof(Patch) + nodes_.size() * sizeof(Node) +
+           fits_.size() * sizeof(Fit);
+  }
+
+ private:
+  void grow(bool sorted);
+  void halve(std::size_t node, Index begin, Index end, bool sorted);
+
+  std::vector<Patch> patches_;
+  std::vector<Node> nodes_;  ///< twice as many as patches, less one
+  std::vector<Fit> fits_;    ///< of inner nodes, in preorder: before node k are k - begin of these
+};
+
+/// A field as the nodes of a tree see it: its mean by area, and its slopes along f.
+struct NodeField {
+  double mean = 0;
+  std::array<float, kPatchFeatures> slope{};
+};
+
+/// Calls some.template operator()<n>(b) for bands b to b + n - 1, all in turn, as many at once as
+/// fit into registers.
+template <class Some>
+void forBandsAtOnce(int bands, const Some& some) {
+  constexpr int kAtOnce = 4;
+  for (int b = 0; b < bands; b += kAtOnce) {
+    switch (std::min(bands - b, kAtOnce)) {
+      case 1:
+        some.template operator()<1>(b);
+        break;
+      case 2:
+        some.template operator()<2>(b);
+        break;
+      case 3:
+        some.template operator()<3>(b);
+        break;
+      default:
+        some.template operator()<kAtOnce>(b);
+        break;
+    }
+  }
+}
+
+/// The fields of all bands over all nodes: bands values a node. `x`: N * bands, by patch.
+std::vector<NodeField> nodeFields(const PatchTree& tree, std::span<const double> x, int bands);
+
+}  // namespace radiosity
