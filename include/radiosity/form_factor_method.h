@@ -15,7 +15,7 @@ namespace [[gnu::visibility("default")]] radiosity {
 
 /// What makes, or has made, form factors.
 enum class FormFactorMethod {
-  automatic,  ///< exact or rays, as a sample of rows decides; the report says why
+  automatic,  ///< exact, or rays or cut, as a sample of rows decides; the report says why
   exact,      ///< area to area, with blocked parts clipped off
   rays,       ///< area to area, by counting cosine-distributed rays
   cut,        ///< the same without pairs: rows cut through a tree of patches
@@ -35,8 +35,8 @@ struct MethodTraits {
   /// Rows are of unknowns, made by process 0 out of what all processes count. Others make rows of
   /// patches, each in one process, and sum them over clusters.
   bool counts_unknowns = false;
-  /// Whether several processes can make its rows and hold them.
-  bool is_shareable = true;
+  /// Whether it gives F_ij pair by pair (ExchangeMatrix).
+  bool stores_pairs = true;
   /// The share of its light that an energy account may be off, and the cure if it is off by more.
   double imbalance = std::numeric_limits<double>::infinity();
   std::string (*cure)() = [] { return std::string(); };
@@ -52,7 +52,8 @@ inline std::string cureOfMatrix() {
 inline constexpr std::array kMethods{
     MethodTraits{.method = FormFactorMethod::automatic,
                  .word = "auto",
-                 .summary = "exact or rays, by what a sample of rows takes; the report says why"},
+                 .summary = "exact, or rays, or cut for many patches, by what a sample of rows takes; "
+                            "the report says why"},
     // Rows are off 1 by rounding and tolerance, and bright rooms multiply that.
     MethodTraits{.method = FormFactorMethod::exact,
                  .word = "exact",
@@ -84,7 +85,7 @@ inline constexpr std::array kMethods{
                  .tolerance = 2e-2,
                  .symmetric = false,
                  .counts_unknowns = true,
-                 .is_shareable = false,
+                 .stores_pairs = false,
                  .imbalance = 0.005,
                  .cure =
                      [] {
@@ -116,7 +117,8 @@ constexpr bool MethodTraits::uses(std::string_view option) const {
 }
 
 /// The methods that `automatic` chooses from, the most accurate one first.
-inline constexpr std::array kAutomaticChoices{FormFactorMethod::exact, FormFactorMethod::rays};
+inline constexpr std::array kAutomaticChoices{FormFactorMethod::exact, FormFactorMethod::rays,
+                                              FormFactorMethod::cut};
 
 constexpr const MethodTraits& traitsOf(FormFactorMethod method) {
   for (const MethodTraits& traits : kMethods) {

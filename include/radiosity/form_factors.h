@@ -89,6 +89,7 @@ struct FormFactorOptions {
   /// (ScratchMemory), with the same bits. Empty: such a matrix is refused.
   std::string scratch_folder;
   std::size_t memory_held = 0;  ///< bytes held by others; they count towards limit and estimate
+  bool needs_pairs = false;     ///< F_ij are wanted one by one: a method without is refused
   bool simd = true;             ///< false: Highway's scalar target (same bits)
 
   static constexpr double kExactTolerance = traitsOf(FormFactorMethod::exact).tolerance;
@@ -110,7 +111,7 @@ struct FormFactorOptions {
     list({.name = "method",
           .value = "METHOD",
           .help = "How form factors are computed (default auto: exact or rays, by what a sample of "
-                  "rows takes)"},
+                  "rows takes; cut in place of rays where patches are many)"},
          o.method);
     list({.name = "tolerance",
           .value = "FRACTION",
@@ -178,13 +179,15 @@ struct FormFactorOptions {
          o.memory_limit);
     list({.name = "memory_held", .unit = "bytes", .in_key = InKey::never}, o.memory_held);
     list({.name = "scratch_folder", .in_key = InKey::never}, o.scratch_folder);
+    list({.name = "needs_pairs", .in_key = InKey::never}, o.needs_pairs);
   }
 
   Precision storedPrecision() const;
   /// The tolerance of a method; of one without, that of exact form factors beside its own.
   double toleranceOf(FormFactorMethod by) const {
     if (tolerance) return *tolerance;
-    if (sources_only) return kSourceTolerance;
+    // Of irradiance, which sources give back as it is.
+    if (sources_only && by != FormFactorMethod::cut) return kSourceTolerance;
     const double usual = traitsOf(by).tolerance;
     return usual > 0 ? usual : kExactTolerance;
   }
@@ -474,7 +477,7 @@ struct FormFactors {
 };
 
 /// The plan of a computation, made from a sample of rows before time and memory are spent.
-/// `automatic` chooses by the seconds of exact and of rays. Seconds are by the clock, on the
+/// `automatic` chooses by the seconds of exact and of rays or cut. Seconds are by the clock, on the
 /// threads allowed, at the rates that the sample reached on this machine, without the time of the
 /// plan itself. On scenes that nothing was fitted to they are mostly right within a factor of 2.
 struct FormFactorPlan {
@@ -495,7 +498,7 @@ struct FormFactorPlan {
   double secondsIfLooser(double times) const;
   /// If rays stop early: seconds for the default tolerance.
   std::optional<double> seconds_to_tolerance;
-  /// The other one of exact and rays, if both were sampled.
+  /// The other one of exact and rays or cut, if both were sampled.
   struct Other {
     FormFactorMethod method = FormFactorMethod::exact;
     double seconds = 0;

@@ -70,6 +70,19 @@ void requireSolver(const PipelineOptions& options) {
 
 }  // namespace
 
+namespace {
+
+/// Whether what is written, or shared by processes, is made of form factors one by one.
+bool needsPairs(const Session& session) {
+  const Request& request = session.request;
+  return session.processes != nullptr || request.command == Command::view ||
+         std::ranges::any_of(parseOutputs(request), [](const Output& output) {
+           return output.format == Format::matrix_market;
+         });
+}
+
+}  // namespace
+
 Run::Run(Session& session, const std::string& results_output)
     : said(session.request, session.report, session.limit, !results_output.empty()),
       pipeline(session.progress, &said) {
@@ -81,6 +94,7 @@ Run::Run(Session& session, const std::string& results_output)
   PipelineOptions& options = pipeline.options();
   options.mesh = request.apply(options.mesh);
   options.factors = request.apply(options.factors);
+  options.factors.needs_pairs = needsPairs(session);
   options.solve = request.apply(options.solve);
   requireSolver(options);
   options.gather = request.apply(options.gather);

@@ -36,6 +36,12 @@ constexpr double kShortSeconds = 0.5;
 /// What could not be prepared at first would hardly be sampled the second time in less than this.
 constexpr double kUnpreparedSeconds = 1;
 
+/// From so many unknowns on the pairs that rays find take gigabytes, and say no more of the light:
+/// rows that are cut take their place, but for a tolerance below this, which asks for more rays than
+/// these have.
+constexpr std::size_t kManyUnknowns = 20'000;
+constexpr double kFinestCut = 5e-3;
+
 std::string secondsText(double seconds) {
   if (seconds < 0.1) return "less than 0.1 s";
   if (seconds < 10) return fmt::format("about {:.2g} s", seconds);
@@ -45,9 +51,9 @@ std::string secondsText(double seconds) {
 /// The seconds that exact may take and still be chosen. With shared unknowns it must be the faster
 /// one: an error of their light is larger than that of either method's form factors.
 double secondsExactMayTake(const PatchMesh& mesh, const FormFactorOptions& options,
-                           double ray_seconds) {
-  if (options.tolerance || mesh.clusters) return ray_seconds;
-  return std::max(kTimesForAccuracy * ray_seconds, kSecondsForAccuracy);
+                           double other_seconds) {
+  if (options.tolerance || mesh.clusters) return other_seconds;
+  return std::max(kTimesForAccuracy * other_seconds, kSecondsForAccuracy);
 }
 
 /// Nothing if planning takes longer than `seconds`.
@@ -62,23 +68,31 @@ std::optional<FormFactorPlan> planInTime(PreparedMethod& method, double seconds,
   }
 }
 
-std::string exactReason(const FormFactorPlan& exact, const FormFactorPlan& rays, bool smaller) {
-  return fmt::format("it takes {}; rays, to {:.2g}, would take {}{}", secondsText(exact.seconds),
-                     rays.tolerance, secondsText(rays.seconds),
-                     smaller ? " and " + bytesText(rays.bytes) : "");
+std::string exactReason(const FormFactorPlan& exact, const FormFactorPlan& other, bool smaller) {
+  return fmt::format("it takes {}; {}, to {:.2g}, would take {}{}", secondsText(exact.seconds),
+                     traitsOf(other.method).word, other.tolerance, secondsText(other.seconds),
+                     smaller ? " and " + bytesText(other.bytes) : "");
 }
 
 /// `exact`: nothing if its plan took too long.
-std::string raysReason(const std::optional<FormFactorPlan>& exact, bool fits,
-                       const FormFactorPlan& rays) {
-  const std::string text = fmt::format("to {:.2g} they take {}; exact would take ", rays.tolerance,
-                                       secondsText(rays.seconds));
+std::string otherReason(const std::optional<FormFactorPlan>& exact, bool fits,
+                        const FormFactorPlan& other) {
+  const std::string text =
+      fmt::format("to {:.2g} {} {}; exact would take ", other.tolerance,
+                  other.method == FormFactorMethod::rays ? "they take" : "it takes",
+                  secondsText(other.seconds));
   if (!exact) return text + "longer, as far as it was looked at";
   return fmt::format("{}{} and {}{}", text, secondsText(exact->seconds), bytesText(exact->bytes),
                      fits ? "" : ", more than " + spelled("memory_limit"));
 }
 
 }  // namespace
+
+FormFactorMethod besideExact(const PatchMesh& mesh, const FormFactorOptions& options) {
+  const bool many = mesh.unknowns() >= kManyUnknowns && !options.needs_pairs &&
+                    options.toleranceOf(FormFactorMethod::cut) >= kFinestCut;
+  return many ? FormFactorMethod::cut : FormFactorMethod::rays;
+}
 
 /// If planning exact takes long beside what rays take, exact is not the faster one: a plan takes
 /// about a hundredth of the whole.
@@ -93,9 +107,9 @@ Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Pro
     exact.plan.reason = fmt::format("it takes {}", secondsText(exact.plan.seconds));
     return exact;
   }
-  Chosen rays{prepareMethod(FormFactorMethod::rays, mesh, options), {}};
-  rays.plan = rays.method->plan(progress);
-  const double most = secondsExactMayTake(mesh, options, rays.plan.seconds);
+  Chosen other{prepareMethod(besideExact(mesh, options), mesh, options), {}};
+  other.plan = other.method->plan(progress);
+  const double most = secondsExactMayTake(mesh, options, other.plan.seconds);
   const bool prepared = exact.method->secondsPreparing() > 0;
   const double least = prepared ? 2 * kSecondSeconds : kUnpreparedSeconds / kPlanShare;
   if (!planned && most > least) {
@@ -103,16 +117,16 @@ Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Pro
   }
   const bool exact_fits = planned && fits(*planned);
   const bool smaller =
-      planned && !exact_fits && !fits(rays.plan) && planned->bytes < rays.plan.bytes;
+      planned && !exact_fits && !fits(other.plan) && planned->bytes < other.plan.bytes;
   if (smaller || (exact_fits && planned->seconds <= most)) {
     exact.plan = *std::move(planned);
-    exact.plan.other = {FormFactorMethod::rays, rays.plan.seconds};
-    exact.plan.reason = exactReason(exact.plan, rays.plan, smaller);
+    exact.plan.other = {other.plan.method, other.plan.seconds};
+    exact.plan.reason = exactReason(exact.plan, other.plan, smaller);
     return exact;
   }
-  if (planned) rays.plan.other = {FormFactorMethod::exact, planned->seconds};
-  rays.plan.reason = raysReason(planned, exact_fits, rays.plan);
-  return rays;
+  if (planned) other.plan.other = {FormFactorMethod::exact, planned->seconds};
+  other.plan.reason = otherReason(planned, exact_fits, other.plan);
+  return other;
 }
 
 /// Time is that of processors, so that other work on the machine does not change the method.

@@ -1,4 +1,4 @@
-// The choice between exact form factors and rays, by their plans.
+// The choice between exact form factors and rays, or rows that are cut, by their plans.
 #pragma once
 
 #include <memory>
@@ -16,11 +16,15 @@ struct Chosen {
 /// Plans both methods and keeps one.
 Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Progress& progress);
 
-/// Chosen automatically, exact is given up, and rays take its place, where it takes far longer than
+/// What takes the place of exact form factors where these take too long: rays, or rows that are cut
+/// where patches are many.
+FormFactorMethod besideExact(const PatchMesh& mesh, const FormFactorOptions& options);
+
+/// Chosen automatically, exact is given up, and besideExact() takes its place, where it takes far longer than
 /// was foreseen: then nothing. `seconds`: those foreseen.
 std::optional<FormFactors> computeInTime(const PreparedMethod& exact, double seconds,
                                          Progress& progress, RowJournal* journal);
-/// The reason for rays then.
+/// The reason for that.
 std::string overrunText(double foreseen, double taken);
 
 }  // namespace radiosity

@@ -15,6 +15,7 @@
 #include "formfactor/method.h"
 #include "formfactor/row_accounts.h"
 #include "formfactor/shared_factors.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 
@@ -54,6 +55,12 @@ void FormFactorOptions::validate() const {
   requireRanges(*this);
   if (traitsOf(method).summary.empty()) {
     throw InputError(fmt::format("method {}: computes nothing", traitsOf(method).word));
+  }
+  if (needs_pairs && !traitsOf(method).stores_pairs) {
+    throw InputError(fmt::format(
+        "method {}: has no form factors pair by pair, which several processes, a page and a matrix "
+        "in a file are made of; give {} or rays",
+        traitsOf(method).word, spelled("method", "exact")));
   }
 }
 
@@ -97,14 +104,16 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
 
 namespace {
 
-/// Rays in place of exact form factors that were given up after `seconds`.
-FormFactors raysInstead(const FormFactorPlan& exact, double seconds, Progress& progress) {
+/// Form factors in place of exact ones that were given up after `seconds`.
+FormFactors computeInstead(const FormFactorPlan& exact, double seconds, Progress& progress) {
   FormFactorOptions options = exact.prepared->options;
-  options.method = FormFactorMethod::rays;
-  FormFactorPlan rays = planFormFactors(exact.prepared->mesh, options, progress);
-  rays.reason = overrunText(exact.seconds, seconds);
-  FormFactors result = computeFormFactors(rays, progress);
-  result.report.notes.push_back({Severity::info, "form factors by rays: " + rays.reason});
+  options.method = besideExact(*exact.prepared->mesh, options);
+  FormFactorPlan plan = planFormFactors(exact.prepared->mesh, options, progress);
+  plan.reason = overrunText(exact.seconds, seconds);
+  FormFactors result = computeFormFactors(plan, progress);
+  result.report.notes.push_back(
+      {Severity::info, fmt::format("form factors by the method {}: {}",
+                                   traitsOf(options.method).word, plan.reason)});
   result.report.seconds += exact.prepared->seconds + seconds;
   return result;
 }
@@ -126,7 +135,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   FormFactors result;
   if (may_give_up) {
     std::optional<FormFactors> in_time = computeInTime(method, plan.seconds, progress, journal);
-    if (!in_time) return raysInstead(plan, watch.seconds(), progress);
+    if (!in_time) return computeInstead(plan, watch.seconds(), progress);
     result = *std::move(in_time);
   } else {
     KnownRows known = prepared.emitters ? prepared.emitters->compute(progress) : KnownRows();

@@ -41,9 +41,6 @@ void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
                     "the program without mpirun",
                     spelled("eye", "cpu")));
   }
-  if (!method.is_shareable) {
-    throw InputError(spelled("method", method.word) + kNeedsAllRows);
-  }
   if (options.symmetrize) {
     throw InputError(spelled("symmetrize") + kNeedsAllRows);
   }

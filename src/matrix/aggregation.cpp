@@ -183,6 +183,19 @@ std::vector<double> exchangeByProducts(const ExchangeOperator& factors,
   return exchange;
 }
 
+/// Fits to the light of many patches at once may see a little less than nothing of a group: that is
+/// 0, and all others of the row give up a share of theirs, so that its sum stays.
+void liftFromBelowZero(std::span<double> row) {
+  double sum = 0;
+  double above = 0;
+  for (const double value : row) {
+    sum += value;
+    above += std::max(0.0, value);
+  }
+  const double share = above > 0 ? std::max(0.0, sum) / above : 0.0;
+  for (double& value : row) value = share * std::max(0.0, value);
+}
+
 /// Of form factors whose pairs are not stored in this process.
 std::shared_ptr<const ExchangeMatrix> aggregatedProducts(const ExchangeOperator& factors,
                                                          std::span<const Index> group_of,
@@ -199,7 +212,10 @@ std::shared_ptr<const ExchangeMatrix> aggregatedProducts(const ExchangeOperator&
     return result;
   }
   auto result = std::make_shared<RowMatrix>(std::move(area), stored);
-  for (std::size_t g = 0; g < groups; ++g) storeRow(g, rowOf(g), *result);
+  for (std::size_t g = 0; g < groups; ++g) {
+    if (!factors.isNonNegative()) liftFromBelowZero(rowOf(g));
+    storeRow(g, rowOf(g), *result);
+  }
   return result;
 }
 

@@ -16,7 +16,18 @@ using Vector = Eigen::Matrix<double, kPatchFeatures, 1>;
 using Square = Eigen::Matrix<double, kPatchFeatures, kPatchFeatures>;
 
 /// Nodes of fewer patches are one thread's.
-constexpr Index kTreeGrain = 4096;
+constexpr std::size_t kTreeGrain = 4096;
+
+/// Calls both, in parallel if a node has many patches.
+template <class First, class Second>
+void bothHalves(std::size_t patches, const First& first, const Second& second) {
+  if (patches >= kTreeGrain) return parallelBoth(first, second);
+  first();
+  second();
+}
+
+std::size_t middleOf(std::size_t begin, std::size_t end) { return begin + (end - begin) / 2; }
+
 /// The share of the largest variance that is added to all: features that hardly spread have no say.
 constexpr double kHeldVariance = 0.01;
 
@@ -25,41 +36,52 @@ Vector vectorOf(const PatchTree::Features& at) {
 }
 
 struct Spread {
-  PatchTree::Fit fit;
-  std::size_t widest = 0;  ///< the feature that varies most
+  Vector middle = Vector::Zero();
+  double radius = 0;
+  Square covariance = Square::Zero();  ///< of f
 };
 
 Spread spreadOf(std::span<const PatchTree::Patch> patches) {
   Spread spread;
   double area = 0;
-  Vector middle = Vector::Zero();
   for (const PatchTree::Patch& patch : patches) {
     area += patch.area;
-    middle += patch.area * vectorOf(patch.at);
+    spread.middle += patch.area * vectorOf(patch.at);
   }
-  middle /= area;
+  spread.middle /= area;
   double square = 0;
   for (const PatchTree::Patch& patch : patches) {
-    square = std::max(square, (vectorOf(patch.at) - middle).head<3>().squaredNorm());
+    square = std::max(square, (vectorOf(patch.at) - spread.middle).head<3>().squaredNorm());
   }
-  PatchTree::Fit& fit = spread.fit;
-  fit.radius = std::sqrt(square);
-  Square covariance = Square::Zero();
+  spread.radius = std::sqrt(square);
   for (const PatchTree::Patch& patch : patches) {
-    Vector f = vectorOf(patch.at) - middle;
-    if (fit.radius > 0) f.head<3>() /= fit.radius;
-    covariance += patch.area * f * f.transpose();
+    Vector f = vectorOf(patch.at) - spread.middle;
+    if (spread.radius > 0) f.head<3>() /= spread.radius;
+    spread.covariance += patch.area * f * f.transpose();
   }
-  covariance /= area;
-  const double most = covariance.diagonal().maxCoeff(&spread.widest);
-  Eigen::Map<Vector>(fit.middle.data()) = middle;
-  if (most > 0) {
-    covariance.diagonal().array() += kHeldVariance * most;
-    const Square inverse = covariance.llt().solve(Square::Identity());
-    Eigen::Map<Eigen::Matrix<float, kPatchFeatures, kPatchFeatures>>(fit.inverse.data()) =
-        inverse.cast<float>();
-  }
+  spread.covariance /= area;
   return spread;
+}
+
+/// The feature over which patches spread most.
+std::size_t widestOf(std::span<const PatchTree::Patch> patches) {
+  std::size_t widest = 0;
+  spreadOf(patches).covariance.diagonal().maxCoeff(&widest);
+  return widest;
+}
+
+PatchTree::Fit fitOf(std::span<const PatchTree::Patch> patches) {
+  Spread spread = spreadOf(patches);
+  PatchTree::Fit fit;
+  fit.radius = spread.radius;
+  Eigen::Map<Vector>(fit.middle.data()) = spread.middle;
+  const double most = spread.covariance.diagonal().maxCoeff();
+  if (!(most > 0)) return fit;
+  spread.covariance.diagonal().array() += kHeldVariance * most;
+  const Square inverse = spread.covariance.llt().solve(Square::Identity());
+  Eigen::Map<Eigen::Matrix<float, kPatchFeatures, kPatchFeatures>>(fit.inverse.data()) =
+      inverse.cast<float>();
+  return fit;
 }
 
 /// Sums over a node, with f about its middle but not divided by its radius.
@@ -82,12 +104,9 @@ class UpSweep {
     std::array<double, 2> areas{};
     std::array<Moments<kBands>, 2> below;
     const std::array<std::size_t, 2> children{tree_.first(node), tree_.second(node)};
-    if (of.end - of.begin < kTreeGrain) {
-      for (std::size_t c = 0; c < 2; ++c) below[c] = (*this)(children[c], areas[c]);
-    } else {
-      parallelBoth([&] { below[0] = (*this)(children[0], areas[0]); },
-                   [&] { below[1] = (*this)(children[1], areas[1]); });
-    }
+    bothHalves(
+        of.end - of.begin, [&] { below[0] = (*this)(children[0], areas[0]); },
+        [&] { below[1] = (*this)(children[1], areas[1]); });
     area = areas[0] + areas[1];
     return inner(node, children, below, area);
   }
@@ -112,7 +131,7 @@ class UpSweep {
     for (std::size_t c = 0; c < 2; ++c) {
       std::array<double, kPatchFeatures> moved{};
       for (std::size_t k = 0; k < kPatchFeatures; ++k) {
-        moved[k] = middleOf(children[c], k) - fit.middle[k];
+        moved[k] = middleAt(children[c], k) - fit.middle[k];
       }
       for (std::size_t b = 0; b < kBands; ++b) {
         moments.sum[b] += below[c].sum[b];
@@ -135,7 +154,7 @@ class UpSweep {
     return moments;
   }
 
-  double middleOf(std::size_t node, std::size_t feature) const {
+  double middleAt(std::size_t node, std::size_t feature) const {
     const PatchTree::Node& of = tree_.nodes()[node];
     return of.isLeaf() ? double(tree_.patches()[of.begin].at[feature])
                        : tree_.fit(node).middle[feature];
@@ -167,46 +186,47 @@ std::array<double, kPatchFeatures> PatchTree::Fit::solve(const std::array<double
   return solved;
 }
 
-PatchTree::PatchTree(std::vector<Patch> patches) : patches_(std::move(patches)) { grow(false); }
+PatchTree::PatchTree(std::vector<Patch> patches) : patches_(std::move(patches)) {
+  if (patches_.empty()) return;
+  sort(0, patches_.size());
+  grow();
+}
 
 PatchTree PatchTree::ofSorted(std::vector<Patch> patches) {
   PatchTree tree;
   tree.patches_ = std::move(patches);
-  tree.grow(true);
+  if (!tree.patches_.empty()) tree.grow();
   return tree;
 }
 
-void PatchTree::grow(bool sorted) {
-  if (patches_.empty()) return;
-  nodes_.resize(2 * patches_.size() - 1);
-  fits_.resize(patches_.size() - 1);
-  halve(0, 0, Index(patches_.size()), sorted);
+void PatchTree::sort(std::size_t begin, std::size_t end) {
+  if (end - begin <= 1) return;
+  const std::span<Patch> patches = std::span(patches_).subspan(begin, end - begin);
+  const std::size_t widest = widestOf(patches);
+  const auto isBefore = [widest](const Patch& a, const Patch& b) {
+    return std::tie(a.at[widest], a.at, a.patch) < std::tie(b.at[widest], b.at, b.patch);
+  };
+  const std::size_t middle = middleOf(begin, end);
+  std::nth_element(patches.begin(), patches.begin() + std::ptrdiff_t(middle - begin), patches.end(),
+                   isBefore);
+  bothHalves(end - begin, [&] { sort(begin, middle); }, [&] { sort(middle, end); });
 }
 
-void PatchTree::halve(std::size_t node, Index begin, Index end, bool sorted) {
-  nodes_[node] = {begin, end};
-  if (end - begin == 1) return;
-  const std::span<Patch> patches = std::span(patches_).subspan(begin, end - begin);
-  const auto [fit, widest] = spreadOf(patches);
-  fits_[node - begin] = fit;
-  const Index middle = begin + (end - begin) / 2;
-  if (!sorted) {
-    const auto isBefore = [widest = widest](const Patch& a, const Patch& b) {
-      return std::tie(a.at[widest], a.at, a.patch) < std::tie(b.at[widest], b.at, b.patch);
-    };
-    std::nth_element(patches.begin(), patches.begin() + (middle - begin), patches.end(), isBefore);
-  }
-  const auto below = [&](std::size_t child, Index from, Index to) {
-    halve(child, from, to, sorted);
-  };
-  const std::size_t second_child = node + 2 * std::size_t(middle - begin);
-  if (end - begin < kTreeGrain) {
-    below(node + 1, begin, middle);
-    below(second_child, middle, end);
-  } else {
-    parallelBoth([&] { below(node + 1, begin, middle); },
-                 [&] { below(second_child, middle, end); });
-  }
+void PatchTree::grow() {
+  nodes_.resize(2 * patches_.size() - 1);
+  fits_.resize(patches_.size() - 1);
+  growNode(0, 0, patches_.size());
+}
+
+// Once patches are sorted: the bits of a fit depend on their order.
+void PatchTree::growNode(std::size_t node, std::size_t begin, std::size_t end) {
+  nodes_[node] = {Index(begin), Index(end)};
+  if (end - begin <= 1) return;
+  fits_[node - begin] = fitOf(std::span(patches_).subspan(begin, end - begin));
+  const std::size_t middle = middleOf(begin, end);
+  bothHalves(
+      end - begin, [&] { growNode(node + 1, begin, middle); },
+      [&] { growNode(node + 2 * (middle - begin), middle, end); });
 }
 
 std::vector<NodeField> nodeFields(const PatchTree& tree, std::span<const double> x, int bands) {

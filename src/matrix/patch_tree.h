@@ -71,8 +71,9 @@ class PatchTree {
   }
 
  private:
-  void grow(bool sorted);
-  void halve(std::size_t node, Index begin, Index end, bool sorted);
+  void sort(std::size_t begin, std::size_t end);
+  void grow();
+  void growNode(std::size_t node, std::size_t begin, std::size_t end);
 
   std::vector<Patch> patches_;
   std::vector<Node> nodes_;  ///< twice as many as patches, less one

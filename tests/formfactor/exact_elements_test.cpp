@@ -32,15 +32,15 @@ void expectSoundClusters(const ElementSet& set) {
     const Vec3 u = cluster.bounds[1] - cluster.bounds[0];
     const Vec3 v = cluster.bounds[3] - cluster.bounds[0];
     // Rounding of coordinates of size 1, a few times over.
-    constexpr double kRounding = 1e-15;
+    constexpr double kRoundingOfPlaces = 1e-15;
     for (Index e = cluster.elements.first; e < cluster.elements.end; ++e) {
       for (const Vec3& corner : set.outline(e)) {
-        EXPECT_LE(glm::distance(corner, cluster.centre), cluster.radius + kRounding);
+        EXPECT_LE(glm::distance(corner, cluster.centre), cluster.radius + kRoundingOfPlaces);
         const Vec3 p = corner - cluster.bounds[0];
-        EXPECT_GE(glm::dot(p, u), -kRounding);
-        EXPECT_GE(glm::dot(p, v), -kRounding);
-        EXPECT_LE(glm::dot(p, u), glm::dot(u, u) + kRounding);
-        EXPECT_LE(glm::dot(p, v), glm::dot(v, v) + kRounding);
+        EXPECT_GE(glm::dot(p, u), -kRoundingOfPlaces);
+        EXPECT_GE(glm::dot(p, v), -kRoundingOfPlaces);
+        EXPECT_LE(glm::dot(p, u), glm::dot(u, u) + kRoundingOfPlaces);
+        EXPECT_LE(glm::dot(p, v), glm::dot(v, v) + kRoundingOfPlaces);
       }
     }
     if (cluster.child_count == 0) {

@@ -16,6 +16,7 @@
 #include "formfactor/closed_rows.h"
 #include "formfactor/cut/cut_blocks.h"
 #include "formfactor/cut/cut_plan.h"
+#include "formfactor/rays/ray_model.h"
 #include "formfactor/row_accounts.h"
 #include "radiosity/spelling.h"
 
@@ -91,6 +92,8 @@ Cut::Cost Cut::foresee(Progress& progress) {
   Cost cost;
   cost.plan.seconds = plan_.seconds * double(n) / double(allowedThreads());
   cost.plan.tolerance = std::hypot(plan_.noise, plan_.bias);
+  cost.plan.refining = 1;
+  cost.plan.refining_order = 2 / kUsualOrder;
   cost.plan.matrix_bytes = std::size_t(double(n) * plan_.entries * kEntryBytes) + n * kTreeBytes;
   bytes_ = options().memory_held + scene_->bytes() + cost.plan.matrix_bytes + n * kAccountBytes;
   cost.memory.bytes = bytes_;

@@ -207,7 +207,7 @@ class Trials {
       cutAll(plan);
       if (plan.bias <= kBiasShare * tolerance) break;
     }
-    plan.seconds = taken_.clock / rays_taken_ * plan.rays;
+    plan.seconds = taken_.ratio() * taken_.processor / rays_taken_ * plan.rays;
     plan.is_lit = std::ranges::any_of(rows_, [](const SampleRow& row) {
       return std::ranges::any_of(row.whole, [](double h) { return h > 0; });
     });

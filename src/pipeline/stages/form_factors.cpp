@@ -50,6 +50,7 @@ FormFactorOptions optionsOf(const StageKey& key) {
 bool Pipeline::factorsFit(const Keyed<FormFactors>& factors, const StageKey& key,
                           std::optional<FormFactorPlan>& plan) const {
   if (!factors) return false;
+  if (options_.factors.needs_pairs && !traitsOf(factors->method).stores_pairs) return false;
   if (factors.key == key.text()) return true;
   const std::string method = nameOf(kFactorsFromNames, factors->method);
   const StageKey made_with = usedKey(StageKey(factors.key), method);
