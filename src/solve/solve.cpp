@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/figure_text.h"
 #include "base/option_list.h"
 #include "base/processor_clock.h"
 #include "solve/band_plan.h"
@@ -68,6 +69,26 @@ std::vector<double> sourceOf(std::span<const double> reflectance, std::span<cons
   std::vector<double> source(emission.begin(), emission.end());
   for (std::size_t k = 0; k < source.size(); ++k) source[k] += reflectance[k] * given[k];
   return source;
+}
+
+/// Where form factors are fits, some of which are below 0, what falls on a dark patch may come out
+/// below 0, within its error: it is 0, and the message says for how many patches.
+void raiseFromBelowZero(std::span<const double> reflectance, Solution& solution) {
+  const auto width = std::size_t(solution.bands);
+  std::size_t raised = 0;
+  for (std::size_t i = 0; i < solution.irradiance.size() / width; ++i) {
+    bool below = false;
+    for (std::size_t k = i * width; k < (i + 1) * width; ++k) {
+      const double lack = std::max(0.0, -solution.irradiance[k]);
+      below = below || lack > 0;
+      solution.irradiance[k] += lack;
+      solution.radiosity[k] += reflectance[k] * lack;
+    }
+    raised += below ? 1 : 0;
+  }
+  if (raised == 0) return;
+  solution.summary.message += fmt::format("; irradiance of {} {}, below 0 by its error, is 0",
+                                          countText(raised), raised == 1 ? "patch" : "patches");
 }
 
 /// Fills in the summary of a scene in which B = 0 for every patch.
@@ -141,6 +162,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   if (summary.usable() && factors.seeNothing()) {
     summary.message += fmt::format("; {}", factors.condition());
   }
+  if (!factors.matrix->isNonNegative()) raiseFromBelowZero(reflectance, solution);
   summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
   if (summary.usable() && summary.irradiance_error) {
     summary.message +=

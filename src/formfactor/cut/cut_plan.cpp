@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/hash.h"
@@ -19,6 +21,9 @@ namespace radiosity {
 namespace {
 
 constexpr int kTrials = 4;
+/// Of so many lights the kTrials are tried that reach most of the area: one between two faces that
+/// nearly touch says nothing of the rest.
+constexpr std::size_t kCandidates = 16;
 constexpr std::size_t kMostRows = 512;
 constexpr std::uint32_t kFirstRays = 128;
 /// A step gives rows at most this many times the rays that they have.
@@ -114,14 +119,44 @@ void shine(const RayScene& scene, std::span<const PatchTree::Patch> patches, con
   }
 }
 
+/// About kMostRows patches of a tree.
+std::vector<std::size_t> someOf(const PatchTree& tree) {
+  const std::size_t n = tree.patches().size();
+  std::vector<std::size_t> places(std::min(n, kMostRows));
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    places[k] = (2 * k + 1) * n / (2 * places.size());
+  }
+  return places;
+}
+
+std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& tree,
+                                        std::uint64_t seed) {
+  std::vector<PatchTree::Patch> some;
+  for (const std::size_t place : someOf(tree)) some.push_back(tree.patches()[place]);
+  std::vector<double> light(some.size());
+  std::vector<std::pair<double, Trial>> candidates;
+  for (std::size_t c = 0; c < kCandidates; ++c) {
+    const Trial trial = makeTrial(scene, tree, mixed(seed + c));
+    shine(scene, some, trial, light);
+    double lit = 0;
+    for (std::size_t k = 0; k < some.size(); ++k) lit += light[k] > 0 ? some[k].area : 0.0;
+    candidates.emplace_back(lit, trial);
+  }
+  std::ranges::stable_sort(candidates, std::ranges::greater(), &std::pair<double, Trial>::first);
+  std::array<Trial, kTrials> trials;
+  for (std::size_t t = 0; t < trials.size(); ++t) trials[t] = candidates[t].second;
+  return trials;
+}
+
 /// What all trials give to all unknowns, kTrials values each.
 std::vector<double> trialLight(const RayScene& scene, const PatchTree& tree, std::uint64_t seed,
                                Progress& progress) {
   constexpr std::size_t kPatches = 4 * kRayLanes;
   const auto patches = tree.patches();
   std::vector<double> light(scene.size() * kTrials, 0.0);
+  const std::array<Trial, kTrials> trials = chooseTrials(scene, tree, seed);
   for (std::size_t t = 0; t < kTrials; ++t) {
-    const Trial trial = makeTrial(scene, tree, mixed(seed + t));
+    const Trial& trial = trials[t];
     parallelFor(patches.size() / kPatches + 1, 1, [&](std::size_t part) {
       if (progress.cancelled()) return;
       const std::size_t begin = std::min(part * kPatches, patches.size());
@@ -184,11 +219,10 @@ class Trials {
  public:
   Trials(const RayScene& scene, const PatchTree& tree, std::uint64_t seed, Progress& progress)
       : scene_(scene), tree_(tree), progress_(progress) {
-    const std::size_t n = tree.patches().size();
-    rows_.resize(std::min(n, kMostRows));
-    for (std::size_t k = 0; k < rows_.size(); ++k) {
-      rows_[k].place = (2 * k + 1) * n / (2 * rows_.size());
-      rows_[k].area = tree.patches()[rows_[k].place].area;
+    for (const std::size_t place : someOf(tree)) {
+      rows_.emplace_back();
+      rows_.back().place = place;
+      rows_.back().area = tree.patches()[place].area;
     }
     light_ = trialLight(scene, tree, seed, progress);
   }
