@@ -326,6 +326,10 @@ struct CutReport {
   /// and their shadows: by rays, and by cutting.
   double noise = 0;
   double bias = 0;
+  /// The power that rows bring from each patch less what leaves it, summed up without signs over
+  /// all power: by their rays alone, and as scaled.
+  double unbalanced_before = 0;
+  double unbalanced = 0;
   double seconds_prepare = 0;  ///< by the clock: the trees and the exact rows
   double seconds_rows = 0;
 
@@ -341,6 +345,8 @@ struct CutReport {
     list({"opening", "  radius over distance up to"}, r.opening);
     list({"noise", "irradiance off by: rays"}, r.noise);
     list({"bias", "irradiance off by: cutting"}, r.bias);
+    list({"unbalanced_before", "power of patches off by: rays"}, r.unbalanced_before);
+    list({"unbalanced", "  as scaled"}, r.unbalanced);
     list({"seconds_prepare", "time: preparing", "s"}, r.seconds_prepare);
     list({"seconds_rows", "time: rows", "s"}, r.seconds_rows);
   }

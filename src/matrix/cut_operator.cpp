@@ -113,7 +113,7 @@ std::vector<double> CutOperator::row(std::size_t i) const {
     const auto below = patches.subspan(node.begin, node.end - node.begin);
     const double share = parts_.of_a_hit[place] * allHits(rows.hits[e]);
     if (node.isLeaf()) {
-      values[below.front().patch] += share;
+      values[below.front().patch] += below.front().counts * share;
       continue;
     }
     const PatchTree::Fit& fit = parts_.tree.fit(rows.nodes[e]);
@@ -123,17 +123,21 @@ std::vector<double> CutOperator::row(std::size_t i) const {
     for (const PatchTree::Patch& patch : below) {
       const auto f = fit.relative({patch.at[0], patch.at[1], patch.at[2], patch.at[3], patch.at[4],
                                    patch.at[5]});
-      values[patch.patch] += share * patch.area / area * (1 + inner(f, slope));
+      values[patch.patch] += share * patch.counts * patch.area / area * (1 + inner(f, slope));
     }
   }
   return values;
 }
 
-// The weights of a node's patches are A_j / A (1 + f_j' v), v = C^-1 f. By Cauchy and Schwarz their
-// absolute values sum to no more than sqrt(1 + v' C v), and v' C v <= f' C^-1 f.
+// The weights of a node's patches are c_j A_j / A (1 + f_j' v), v = C^-1 f, c_j what they count. By
+// Cauchy and Schwarz their absolute values sum to no more than the root of the mean of c_j^2 times
+// that of 1 + v' C v, and v' C v <= f' C^-1 f.
 std::vector<double> CutOperator::rowNorms() const {
   std::vector<double> norms =
       parts_.pairs ? parts_.pairs->rowSums() : std::vector<double>(size(), 0.0);
+  std::vector<double> counts(size(), 0.0);
+  for (const PatchTree::Patch& patch : parts_.tree.patches()) counts[patch.patch] = patch.counts;
+  const std::vector<NodeField> squares = nodeFields(parts_.tree, counts, 1);
   parallelFor(parts_.blocks.size(), 1, [&](std::size_t b) {
     const CutRows& rows = parts_.blocks[b];
     for (std::size_t r = 0; r < rows.ends.size(); ++r) {
@@ -145,7 +149,8 @@ std::vector<double> CutOperator::rowNorms() const {
           const std::array<double, kPatchFeatures> f = placeOf(rows, e);
           along = inner(f, parts_.tree.fit(rows.nodes[e]).solve(f));
         }
-        sum += allHits(rows.hits[e]) * std::sqrt(1 + std::max(0.0, along));
+        sum += allHits(rows.hits[e]) *
+               std::sqrt(squares[rows.nodes[e]].mean * (1 + std::max(0.0, along)));
       }
       norms[parts_.tree.patches()[place].patch] += parts_.of_a_hit[place] * sum;
     }

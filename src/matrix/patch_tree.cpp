@@ -7,24 +7,11 @@
 #include <tuple>
 #include <utility>
 
-#include "base/parallel.h"
-
 namespace radiosity {
 namespace {
 
 using Vector = Eigen::Matrix<double, kPatchFeatures, 1>;
 using Square = Eigen::Matrix<double, kPatchFeatures, kPatchFeatures>;
-
-/// Nodes of fewer patches are one thread's.
-constexpr std::size_t kTreeGrain = 4096;
-
-/// Calls both, in parallel if a node has many patches.
-template <class First, class Second>
-void bothHalves(std::size_t patches, const First& first, const Second& second) {
-  if (patches >= kTreeGrain) return parallelBoth(first, second);
-  first();
-  second();
-}
 
 std::size_t middleOf(std::size_t begin, std::size_t end) { return begin + (end - begin) / 2; }
 
@@ -104,7 +91,7 @@ class UpSweep {
     std::array<double, 2> areas{};
     std::array<Moments<kBands>, 2> below;
     const std::array<std::size_t, 2> children{tree_.first(node), tree_.second(node)};
-    bothHalves(
+    inHalves(
         of.end - of.begin, [&] { below[0] = (*this)(children[0], areas[0]); },
         [&] { below[1] = (*this)(children[1], areas[1]); });
     area = areas[0] + areas[1];
@@ -117,7 +104,7 @@ class UpSweep {
     area = patch.area;
     Moments<kBands> moments;
     for (std::size_t b = 0; b < kBands; ++b) {
-      const double value = x_[patch.patch * stride_ + b];
+      const double value = patch.counts * x_[patch.patch * stride_ + b];
       moments.sum[b] = patch.area * value;
       fields_[node * stride_ + b] = {value, {}};
     }
@@ -131,7 +118,7 @@ class UpSweep {
     for (std::size_t c = 0; c < 2; ++c) {
       std::array<double, kPatchFeatures> moved{};
       for (std::size_t k = 0; k < kPatchFeatures; ++k) {
-        moved[k] = middleAt(children[c], k) - fit.middle[k];
+        moved[k] = tree_.middle(children[c], k) - fit.middle[k];
       }
       for (std::size_t b = 0; b < kBands; ++b) {
         moments.sum[b] += below[c].sum[b];
@@ -152,12 +139,6 @@ class UpSweep {
       std::copy(slope.begin(), slope.end(), field.slope.begin());
     }
     return moments;
-  }
-
-  double middleAt(std::size_t node, std::size_t feature) const {
-    const PatchTree::Node& of = tree_.nodes()[node];
-    return of.isLeaf() ? double(tree_.patches()[of.begin].at[feature])
-                       : tree_.fit(node).middle[feature];
   }
 
   const PatchTree& tree_;
@@ -209,7 +190,7 @@ void PatchTree::sort(std::size_t begin, std::size_t end) {
   const std::size_t middle = middleOf(begin, end);
   std::nth_element(patches.begin(), patches.begin() + std::ptrdiff_t(middle - begin), patches.end(),
                    isBefore);
-  bothHalves(end - begin, [&] { sort(begin, middle); }, [&] { sort(middle, end); });
+  inHalves(end - begin, [&] { sort(begin, middle); }, [&] { sort(middle, end); });
 }
 
 void PatchTree::grow() {
@@ -224,7 +205,7 @@ void PatchTree::growNode(std::size_t node, std::size_t begin, std::size_t end) {
   if (end - begin <= 1) return;
   fits_[node - begin] = fitOf(std::span(patches_).subspan(begin, end - begin));
   const std::size_t middle = middleOf(begin, end);
-  bothHalves(
+  inHalves(
       end - begin, [&] { growNode(node + 1, begin, middle); },
       [&] { growNode(node + 2 * (middle - begin), middle, end); });
 }

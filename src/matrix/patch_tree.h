@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/parallel.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -22,7 +23,8 @@ class PatchTree {
   using Features = std::array<float, kPatchFeatures>;
   struct Patch {
     Features at{};
-    double area = 0;  ///< above 0; the weight of the patch
+    double area = 0;    ///< above 0; the weight of the patch
+    double counts = 1;  ///< what is multiplied to a field at the patch
     Index patch = 0;
   };
   /// Has the patches patches()[begin] to patches()[end - 1]. Nodes are in preorder.
@@ -56,12 +58,18 @@ class PatchTree {
   static PatchTree ofSorted(std::vector<Patch> patches);
 
   std::span<const Patch> patches() const { return patches_; }
+  void setCounts(std::size_t place, double counts) { patches_[place].counts = counts; }
   std::span<const Node> nodes() const { return nodes_; }
   /// The children of an inner node.
   std::size_t first(std::size_t node) const { return node + 1; }
   std::size_t second(std::size_t node) const {
     const Node& first = nodes_[node + 1];
     return node + 2 * std::size_t(first.end - first.begin);
+  }
+  /// The mean of a feature over a node.
+  double middle(std::size_t node, std::size_t feature) const {
+    const Node& of = nodes_[node];
+    return of.isLeaf() ? double(patches_[of.begin].at[feature]) : fit(node).middle[feature];
   }
   /// Of an inner node.
   const Fit& fit(std::size_t node) const { return fits_[node - nodes_[node].begin]; }
@@ -79,6 +87,15 @@ class PatchTree {
   std::vector<Node> nodes_;  ///< twice as many as patches, less one
   std::vector<Fit> fits_;    ///< of inner nodes, in preorder: before node k are k - begin of these
 };
+
+/// Calls both, for the halves of a node, in parallel if it has many patches.
+template <class First, class Second>
+void inHalves(std::size_t patches, const First& first, const Second& second) {
+  constexpr std::size_t kGrain = 4096;
+  if (patches >= kGrain) return parallelBoth(first, second);
+  first();
+  second();
+}
 
 /// A field as the nodes of a tree see it: its mean by area, and its slopes along f.
 struct NodeField {

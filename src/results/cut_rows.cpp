@@ -17,15 +17,19 @@ namespace {
 
 constexpr unsigned kSecondHits = 16;  // bits
 constexpr std::uint32_t kFirstHits = 0xffff;
+/// Far beyond what balancing gives.
+constexpr double kMostCounts = 1e3;
 
 /// What the arrays are called; one place for all that reads and writes them.
 template <class Sink>
 void putArrays(Sink& group, const CutParts& parts, std::span<const Index> order,
-               std::span<const float> features, std::span<const std::int64_t> starts) {
+               std::span<const float> features, std::span<const double> counts,
+               std::span<const std::int64_t> starts) {
   const std::size_t rows = parts.of_a_hit.size();
   group.attribute("bias", Number::f64, 1, &parts.bias);
   group.dataset("order", {h5::numberOf<Index>(), rows, 0}, order.data(), "");
   group.dataset("features", {Number::f32, rows, kPatchFeatures}, features.data(), "");
+  group.dataset("counts", {Number::f64, rows, 0}, counts.data(), "");
   group.dataset("of_a_hit", {Number::f64, rows, 0}, parts.of_a_hit.data(), "");
   group.dataset("starts", {Number::i64, rows + 1, 0}, starts.data(), "");
 }
@@ -39,6 +43,22 @@ std::vector<std::int64_t> startsOf(const CutParts& parts) {
   return starts;
 }
 
+/// A number from 0 to `most` for each row.
+std::vector<double> readShares(const h5::InputGroup& group, const char* name, std::size_t rows,
+                               double most) {
+  std::size_t count = 0;
+  const h5::Handle set = group.open(name, Number::f64, 0, count);
+  if (count != rows) {
+    group.fail(name, fmt::format("has {} values, order has {}", count, rows));
+  }
+  std::vector<double> shares(rows);
+  if (rows > 0) group.readAll(name, set, Number::f64, shares.data());
+  for (std::size_t k = 0; k < rows; ++k) {
+    if (!(shares[k] >= 0 && shares[k] <= most)) group.failAt(name, k, shares[k]);
+  }
+  return shares;
+}
+
 std::vector<PatchTree::Patch> readPatches(const h5::InputGroup& group,
                                           const std::vector<double>& area) {
   std::size_t rows = 0;
@@ -50,6 +70,7 @@ std::vector<PatchTree::Patch> readPatches(const h5::InputGroup& group,
   if (feature_rows != rows) {
     group.fail("features", fmt::format("has {} rows, order has {}", feature_rows, rows));
   }
+  const std::vector<double> counts = readShares(group, "counts", rows, kMostCounts);
   std::vector<PatchTree::Patch> patches(rows);
   std::vector<float> features(rows * kPatchFeatures);
   if (rows > 0) group.readAll("features", feature_set, Number::f32, features.data());
@@ -61,6 +82,7 @@ std::vector<PatchTree::Patch> readPatches(const h5::InputGroup& group,
     named[order[k]] = true;
     patches[k].patch = order[k];
     patches[k].area = area[order[k]];
+    patches[k].counts = counts[k];
     std::copy_n(features.begin() + std::ptrdiff_t(k * kPatchFeatures), kPatchFeatures,
                 patches[k].at.begin());
     for (const float f : patches[k].at) {
@@ -140,11 +162,13 @@ void writeCut(h5::OutputGroup& group, const CutOperator& factors, Progress& prog
   const CutParts& parts = factors.parts();
   std::vector<Index> order;
   std::vector<float> features;
+  std::vector<double> counts;
   for (const PatchTree::Patch& patch : parts.tree.patches()) {
     order.push_back(patch.patch);
+    counts.push_back(patch.counts);
     features.insert(features.end(), patch.at.begin(), patch.at.end());
   }
-  putArrays(group, parts, order, features, startsOf(parts));
+  putArrays(group, parts, order, features, counts, startsOf(parts));
   const std::size_t entries = factors.entries();
   progress.begin("writing form factors", parts.blocks.size());
   ColumnWriter<Index> nodes(group, "nodes", entries);
@@ -170,7 +194,7 @@ void writeCut(h5::OutputGroup& group, const CutOperator& factors, Progress& prog
 }
 
 void countCut(h5::SizeCounter& group, const CutOperator& factors) {
-  putArrays(group, factors.parts(), {}, {}, {});
+  putArrays(group, factors.parts(), {}, {}, {}, {});
   const std::size_t entries = factors.entries();
   group.dataset("nodes", {h5::numberOf<Index>(), entries, 0}, nullptr, "");
   group.dataset("hits", {Number::u32, entries, 0}, nullptr, "");
@@ -184,17 +208,7 @@ CutParts readCut(const h5::InputGroup& group, std::vector<double> area) {
   parts.tree = PatchTree::ofSorted(readPatches(group, area));
   parts.area = std::move(area);
   const std::size_t rows = parts.tree.patches().size();
-  std::size_t of_a_hit = 0;
-  const h5::Handle set = group.open("of_a_hit", Number::f64, 0, of_a_hit);
-  if (of_a_hit != rows) {
-    group.fail("of_a_hit", fmt::format("has {} values, order has {}", of_a_hit, rows));
-  }
-  parts.of_a_hit.resize(rows);
-  if (rows > 0) group.readAll("of_a_hit", set, Number::f64, parts.of_a_hit.data());
-  for (std::size_t k = 0; k < rows; ++k) {
-    const double of = parts.of_a_hit[k];
-    if (!(of >= 0 && of <= 1)) group.failAt("of_a_hit", k, of);
-  }
+  parts.of_a_hit = readShares(group, "of_a_hit", rows, 1);
   EntryReader entries(group, parts.tree.nodes().size());
   const std::vector<std::int64_t> starts = readStarts(group, rows, entries.entries());
   parts.blocks.resize(CutParts::blocksOf(rows));

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "cut_sample.h"
+#include "matrix/cut_balance.h"
 #include "matrix/cut_operator.h"
 #include "operands.h"
 #include "radiosity/base.h"
@@ -35,7 +37,9 @@ TEST(CutOperator, MultipliesAsItsRowsDo) {
 }
 
 TEST(CutOperator, SumsItsRowsToWhatTheirHitsCount) {
-  const CutOperator cut(test::randomCut(kCutPatches, 3));
+  CutParts parts = test::randomCut(kCutPatches, 3);
+  for (std::size_t k = 0; k < parts.of_a_hit.size(); ++k) parts.tree.setCounts(k, 1);
+  const CutOperator cut(parts);
   const std::vector<double> sums = cut.rowSums();
   for (std::size_t i = 0; i + 2 < kCutPatches; ++i) EXPECT_NEAR(sums[i], 0.9 + 0.0625, 1e-9) << i;
   EXPECT_NEAR(sums[kCutPatches - 2], double(kCutPatches - 2) / kCutPatches, 1e-6);
@@ -98,6 +102,31 @@ TEST(CutOperator, StatesHalfTheDifferenceOfItsTwoSetsOfRays) {
   parts.bias = 0.75;
   EXPECT_NEAR(CutOperator(parts).relativeError(x, 1).value(), 1.25, 1e-12);
   EXPECT_FALSE(CutOperator(parts).relativeError(std::vector<double>(kCutPatches, 0.0), 1));
+}
+
+TEST(CutOperator, IsBalancedByScaling) {
+  // Rows with all patches in them, so that each can be balanced; the known ones stay as they are.
+  CutParts parts = test::randomCut(kCutPatches, 12);
+  for (std::size_t k = 0; k < parts.of_a_hit.size(); ++k) parts.tree.setCounts(k, 1);
+  const std::vector<double> sums(parts.of_a_hit.size(), 0.9);
+  const CutBalance balance = balanceCut(parts, sums, *std::make_unique<Progress>());
+  EXPECT_GT(balance.before, 0.1);
+  EXPECT_LT(balance.after, 0.2 * balance.before);
+  parts.pairs.reset();
+  const CutOperator cut(parts);
+  const std::vector<double> rows = cut.rowSums();
+  std::vector<double> columns(kCutPatches, 0.0);
+  double power = 0;
+  for (std::size_t i = 0; i + 2 < kCutPatches; ++i) {
+    EXPECT_NEAR(rows[i], 0.9, 1e-9);
+    const std::vector<double> row = cut.row(i);
+    for (std::size_t j = 0; j < kCutPatches; ++j) columns[j] += parts.area[i] * row[j];
+    power += parts.area[i] * 0.9;
+  }
+  double off = 0;
+  for (std::size_t j = 0; j + 2 < kCutPatches; ++j) off += std::abs(columns[j] - 0.9 * parts.area[j]);
+  // What is reported is what the rows say; slopes are summed in single precision.
+  EXPECT_NEAR(off / power, balance.after, 1e-5);
 }
 
 TEST(CutOperator, RefusesPartsThatDoNotFit) {

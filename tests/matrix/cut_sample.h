@@ -22,6 +22,7 @@ inline CutParts randomCut(std::size_t n, unsigned seed) {
     for (float& at : patches[k].at) at = uniform(random);
     parts.area[k] = 1.5 + double(uniform(random));
     patches[k].area = parts.area[k];
+    patches[k].counts = 1 + 0.5 * double(uniform(random));
     patches[k].patch = Index(k);
   }
   parts.area[n - 2] = 2;

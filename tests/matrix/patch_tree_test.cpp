@@ -55,7 +55,9 @@ TEST(PatchTree, HalvesItsPatchesDownToOne) {
 
 TEST(PatchTree, OfPatchesThatAreAllAlikeIsATree) {
   std::vector<PatchTree::Patch> patches(5000);
-  for (std::size_t k = 0; k < patches.size(); ++k) patches[k] = {{1, 2, 3, 0, 0, 1}, 1, Index(k)};
+  for (std::size_t k = 0; k < patches.size(); ++k) {
+    patches[k] = {.at = {1, 2, 3, 0, 0, 1}, .area = 1, .patch = Index(k)};
+  }
   const PatchTree tree(patches);
   expectWhole(tree, patches.size());
   EXPECT_EQ(tree.fit(0).radius, 0);

@@ -18,6 +18,7 @@
 #include "formfactor/cut/cut_plan.h"
 #include "formfactor/rays/ray_model.h"
 #include "formfactor/row_accounts.h"
+#include "matrix/cut_balance.h"
 #include "radiosity/spelling.h"
 
 namespace radiosity {
@@ -178,10 +179,16 @@ FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
   closed.report(mesh(), report);
   closed.balance(result);
   accountForBacks(mesh(), scene.order(), area, seen, result);
+  std::vector<double> sums;
+  for (std::size_t place = 0; place < parts.of_a_hit.size(); ++place) {
+    const std::size_t k = cutter.positionOf(place);
+    sums.push_back(result.fronts[scene.order()[k]] - known.share(k, scene.area()[k]));
+  }
   parts.pairs = knownPairs(scene, known, area, options().storedPrecision());
   parts.bias = plan_.bias;
   parts.blocks = blocks.takeRows();
   parts.area = std::move(area);
+  const CutBalance balance = balanceCut(parts, sums, run.progress);
   CutReport& cut = report.cut;
   cut.triangles = scene.caster().triangles();
   cut.rays_a_row = kReplicates * std::size_t(plan_.rays);
@@ -189,6 +196,8 @@ FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
   cut.opening = plan_.opening;
   cut.noise = plan_.noise;
   cut.bias = plan_.bias;
+  cut.unbalanced_before = balance.before;
+  cut.unbalanced = balance.after;
   noteShort(plan_, tolerance(), report);
   const auto matrix = std::make_shared<CutOperator>(std::move(parts));
   cut.entries = matrix->entries();

@@ -30,7 +30,9 @@ PatchTree treeOfUnknowns(const PatchMesh& mesh, const RayScene& scene, const Kno
     const Index unknown = scene.order()[k];
     const glm::vec3 at = scene.caster().place(place[unknown] / area);
     const glm::vec3 facing(normal[unknown] / area);
-    patches.push_back({{at.x, at.y, at.z, facing.x, facing.y, facing.z}, area, unknown});
+    patches.push_back({.at = {at.x, at.y, at.z, facing.x, facing.y, facing.z},
+                       .area = area,
+                       .patch = unknown});
   }
   return PatchTree(std::move(patches));
 }

@@ -1,0 +1,163 @@
+#include "matrix/cut_balance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace radiosity {
+namespace {
+
+/// Of the sum of differences over all power. Few scenes need more than half the steps.
+constexpr double kBalanced = 1e-5;
+constexpr int kBalanceSteps = 20;
+/// What a patch counts for is within this and its inverse.
+constexpr double kMostCounts = 2;
+/// Parts of the rows that are summed up by themselves: the same for any number of threads.
+constexpr std::size_t kParts = 4;
+
+double hitsOf(const CutRows::Hits& hits) { return double(hits[0]) + double(hits[1]); }
+
+/// Sums of the rows, by place.
+std::vector<double> rowSums(const CutParts& parts) {
+  const std::vector<double> ones(parts.area.size(), 1.0);
+  const std::vector<NodeField> fields = nodeFields(parts.tree, ones, 1);
+  std::vector<double> sums(parts.of_a_hit.size());
+  parallelFor(parts.blocks.size(), 1, [&](std::size_t b) {
+    for (std::size_t r = 0; r < parts.blocks[b].ends.size(); ++r) {
+      const std::size_t place = b * CutParts::kBlock + r;
+      sums[place] = parts.of_a_hit[place] *
+                    sumOfCut<1>(parts.blocks[b], r, fields.data(), 1, hitsOf)[0];
+    }
+  });
+  return sums;
+}
+
+/// Adds what rows of some blocks bring from each node: A_i share and, along f, A_i share f.
+void scatter(const CutParts& parts, std::size_t first, std::size_t last,
+             std::vector<NodeField>& nodes) {
+  for (std::size_t b = first; b < last; ++b) {
+    const CutRows& rows = parts.blocks[b];
+    for (std::size_t r = 0; r < rows.ends.size(); ++r) {
+      const std::size_t place = b * CutParts::kBlock + r;
+      const double each = parts.tree.patches()[place].area * parts.of_a_hit[place];
+      for (std::size_t e = rows.begin(r); e < rows.ends[r]; ++e) {
+        NodeField& node = nodes[rows.nodes[e]];
+        const double share = each * hitsOf(rows.hits[e]);
+        node.mean += share;
+        for (std::size_t k = 0; k < kPatchFeatures; ++k) {
+          node.slope[k] += float(share * rows.places[e][k] * CutRows::stepOf(k));
+        }
+      }
+    }
+  }
+}
+
+/// Hands what rows bring from nodes down to their patches.
+class DownSweep {
+ public:
+  DownSweep(const CutParts& parts, const std::vector<NodeField>& nodes, std::vector<double>& sums)
+      : tree_(parts.tree), nodes_(nodes), sums_(sums), before_(tree_.patches().size() + 1, 0.0) {
+    for (std::size_t k = 0; k < tree_.patches().size(); ++k) {
+      before_[k + 1] = before_[k] + tree_.patches()[k].area;
+    }
+  }
+
+  /// What nodes above bring from a square metre: a value at the middle of this node, and slopes
+  /// along the features as they are.
+  struct Linear {
+    double value = 0;
+    std::array<double, kPatchFeatures> slope{};
+  };
+
+  void operator()(std::size_t node, Linear from) const {
+    const PatchTree::Node& of = tree_.nodes()[node];
+    if (of.isLeaf()) {
+      const PatchTree::Patch& patch = tree_.patches()[of.begin];
+      sums_[of.begin] = patch.counts * (patch.area * from.value + nodes_[node].mean);
+      return;
+    }
+    const PatchTree::Fit& fit = tree_.fit(node);
+    const double area = before_[of.end] - before_[of.begin];
+    std::array<double, kPatchFeatures> along{};
+    std::ranges::copy(nodes_[node].slope, along.begin());
+    along = fit.solve(along);
+    from.value += nodes_[node].mean / area;
+    for (std::size_t k = 0; k < kPatchFeatures; ++k) {
+      if (fit.unitOf(k) > 0) from.slope[k] += along[k] / fit.unitOf(k) / area;
+    }
+    const std::array<std::size_t, 2> children{tree_.first(node), tree_.second(node)};
+    const auto down = [&](std::size_t child) { (*this)(child, moved(from, fit, child)); };
+    inHalves(
+        of.end - of.begin, [&] { down(children[0]); }, [&] { down(children[1]); });
+  }
+
+ private:
+  Linear moved(Linear from, const PatchTree::Fit& fit, std::size_t child) const {
+    for (std::size_t k = 0; k < kPatchFeatures; ++k) {
+      from.value += from.slope[k] * (tree_.middle(child, k) - fit.middle[k]);
+    }
+    return from;
+  }
+
+  const PatchTree& tree_;
+  const std::vector<NodeField>& nodes_;
+  std::vector<double>& sums_;
+  std::vector<double> before_;  ///< area of the patches before each place
+};
+
+/// sum_i A_i F_ij, by place.
+std::vector<double> columnSums(const CutParts& parts) {
+  std::array<std::vector<NodeField>, kParts> nodes;
+  parallelFor(kParts, 1, [&](std::size_t p) {
+    nodes[p].resize(parts.tree.nodes().size());
+    const std::size_t blocks = parts.blocks.size();
+    scatter(parts, p * blocks / kParts, (p + 1) * blocks / kParts, nodes[p]);
+  });
+  parallelFor(nodes[0].size(), 4096, [&](std::size_t n) {
+    for (std::size_t p = 1; p < kParts; ++p) {
+      nodes[0][n].mean += nodes[p][n].mean;
+      for (std::size_t k = 0; k < kPatchFeatures; ++k) nodes[0][n].slope[k] += nodes[p][n].slope[k];
+    }
+  });
+  std::vector<double> sums(parts.tree.patches().size());
+  DownSweep(parts, nodes[0], sums)(0, {});
+  return sums;
+}
+
+}  // namespace
+
+CutBalance balanceCut(CutParts& parts, std::span<const double> sums, Progress& progress) {
+  CutBalance balance;
+  const auto patches = parts.tree.patches();
+  double power = 0;
+  for (std::size_t k = 0; k < patches.size(); ++k) power += patches[k].area * sums[k];
+  if (!(power > 0)) return balance;
+  for (int step = 0;; ++step) {
+    progress.check();
+    const std::vector<double> columns = columnSums(parts);
+    double off = 0;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      off += std::abs(columns[k] - patches[k].area * sums[k]);
+    }
+    balance.after = off / power;
+    if (step == 0) balance.before = balance.after;
+    if (balance.after <= kBalanced || step == kBalanceSteps) break;
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      const double wanted = patches[k].area * sums[k];
+      if (!(wanted > 0)) continue;
+      const double times = columns[k] > 0 ? wanted / columns[k] : kMostCounts;
+      parts.tree.setCounts(
+          k, std::clamp(patches[k].counts * times, 1 / kMostCounts, kMostCounts));
+    }
+    const std::vector<double> rows = rowSums(parts);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      if (rows[k] > 0) parts.of_a_hit[k] *= sums[k] / rows[k];
+    }
+  }
+  return balance;
+}
+
+}  // namespace radiosity
