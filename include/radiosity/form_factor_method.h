@@ -52,8 +52,9 @@ inline std::string cureOfMatrix() {
 inline constexpr std::array kMethods{
     MethodTraits{.method = FormFactorMethod::automatic,
                  .word = "auto",
-                 .summary = "exact, or rays, or cut for many patches, by what a sample of rows takes; "
-                            "the report says why"},
+                 .summary =
+                     "exact, or rays, or cut for many patches, by what a sample of rows takes; "
+                     "the report says why"},
     // Rows are off 1 by rounding and tolerance, and bright rooms multiply that.
     MethodTraits{.method = FormFactorMethod::exact,
                  .word = "exact",

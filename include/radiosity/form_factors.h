@@ -317,11 +317,11 @@ struct RayReport {
 /// Counts, errors and times of rows that are cut.
 struct CutReport {
   std::size_t triangles = 0;
-  std::size_t rays = 0;        ///< cast in total
-  std::size_t leaked = 0;      ///< of these, not counted: they left patches that are enclosed
+  std::size_t rays = 0;    ///< cast in total
+  std::size_t leaked = 0;  ///< of these, not counted: they left patches that are enclosed
   std::size_t rays_a_row = 0;
-  std::size_t entries = 0;     ///< of all rows: a node of the tree each
-  double opening = 0;          ///< the most radius of a node over its distance
+  std::size_t entries = 0;  ///< of all rows: a node of the tree each
+  double opening = 0;       ///< the most radius of a node over its distance
   /// Relative errors of irradiance (L2, by area) of rows that were tried under some suns or lamps
   /// and their shadows: by rays, and by cutting.
   double noise = 0;

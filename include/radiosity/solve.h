@@ -63,8 +63,8 @@ struct SolveOptions {
 enum class SolveStatus {
   /// |r|_inf <= tolerance |E|_inf in every band, r = E + rho F B - B; usable. Solvers that are
   /// accurate in a norm alone (cg, gmres, direct, petsc) also hold
-  /// |r_i| <= 100 tolerance (E_i + rho_i H_i) for every patch, unless some E is negative: so rooms
-  /// that little light reaches are right, too.
+  /// |r_i| <= 100 tolerance (E_i + rho_i H_i) for every patch, unless some E or F is negative: so
+  /// rooms that little light reaches are right, too.
   converged,
   no_convergence,  ///< the iteration limit came first; B is the last iterate, not usable as it is
   no_light,        ///< nothing emits, no sky shines in: B = 0; usable, but dark

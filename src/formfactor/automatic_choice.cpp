@@ -37,8 +37,8 @@ constexpr double kShortSeconds = 0.5;
 constexpr double kUnpreparedSeconds = 1;
 
 /// From so many unknowns on the pairs that rays find take gigabytes, and say no more of the light:
-/// rows that are cut take their place, but for a tolerance below this, which asks for more rays than
-/// these have.
+/// rows that are cut take their place, but for a tolerance below this, which asks for more rays
+/// than these have.
 constexpr std::size_t kManyUnknowns = 20'000;
 constexpr double kFinestCut = 5e-3;
 

@@ -13,8 +13,12 @@ namespace {
 /// Of the sum of differences over all power. Few scenes need more than half the steps.
 constexpr double kBalanced = 1e-5;
 constexpr int kBalanceSteps = 20;
-/// What a patch counts for is within this and its inverse.
+/// What a patch counts for is within this and its inverse, and rests on so many hits: one that
+/// hardly any row has hit stays about as it is.
 constexpr double kMostCounts = 2;
+constexpr double kCredibleHits = 16;
+/// A row that falls below this share of its sum has fits that what patches count for upsets.
+constexpr double kSound = 0.5;
 /// Parts of the rows that are summed up by themselves: the same for any number of threads.
 constexpr std::size_t kParts = 4;
 
@@ -28,8 +32,8 @@ std::vector<double> rowSums(const CutParts& parts) {
   parallelFor(parts.blocks.size(), 1, [&](std::size_t b) {
     for (std::size_t r = 0; r < parts.blocks[b].ends.size(); ++r) {
       const std::size_t place = b * CutParts::kBlock + r;
-      sums[place] = parts.of_a_hit[place] *
-                    sumOfCut<1>(parts.blocks[b], r, fields.data(), 1, hitsOf)[0];
+      sums[place] =
+          parts.of_a_hit[place] * sumOfCut<1>(parts.blocks[b], r, fields.data(), 1, hitsOf)[0];
     }
   });
   return sums;
@@ -48,7 +52,7 @@ void scatter(const CutParts& parts, std::size_t first, std::size_t last,
         const double share = each * hitsOf(rows.hits[e]);
         node.mean += share;
         for (std::size_t k = 0; k < kPatchFeatures; ++k) {
-          node.slope[k] += float(share * rows.places[e][k] * CutRows::stepOf(k));
+          node.slope[k] += share * rows.places[e][k] * CutRows::stepOf(k);
         }
       }
     }
@@ -127,6 +131,43 @@ std::vector<double> columnSums(const CutParts& parts) {
   return sums;
 }
 
+/// The power that a hit brings, on average.
+double powerOfAHit(const CutParts& parts) {
+  double power = 0;
+  double hits = 0;
+  for (std::size_t b = 0; b < parts.blocks.size(); ++b) {
+    const CutRows& rows = parts.blocks[b];
+    for (std::size_t r = 0; r < rows.ends.size(); ++r) {
+      const std::size_t place = b * CutParts::kBlock + r;
+      double of_row = 0;
+      for (std::size_t e = rows.begin(r); e < rows.ends[r]; ++e) of_row += hitsOf(rows.hits[e]);
+      hits += of_row;
+      power += of_row * parts.of_a_hit[place] * parts.tree.patches()[place].area;
+    }
+  }
+  return hits > 0 ? power / hits : 0.0;
+}
+
+/// Takes the means of nodes for a row, without their slopes.
+void flatten(CutParts& parts, std::size_t place) {
+  CutRows& rows = parts.blocks[place / CutParts::kBlock];
+  const std::size_t row = place % CutParts::kBlock;
+  std::fill(rows.places.begin() + std::ptrdiff_t(rows.begin(row)),
+            rows.places.begin() + std::ptrdiff_t(rows.ends[row]), CutRows::Place{});
+}
+
+/// Scales rows to their sums.
+void scaleRows(CutParts& parts, std::span<const double> sums) {
+  std::vector<double> found = rowSums(parts);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k] < kSound * sums[k]) flatten(parts, k);
+  }
+  found = rowSums(parts);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k] > 0) parts.of_a_hit[k] *= sums[k] / found[k];
+  }
+}
+
 }  // namespace
 
 CutBalance balanceCut(CutParts& parts, std::span<const double> sums, Progress& progress) {
@@ -135,6 +176,7 @@ CutBalance balanceCut(CutParts& parts, std::span<const double> sums, Progress& p
   double power = 0;
   for (std::size_t k = 0; k < patches.size(); ++k) power += patches[k].area * sums[k];
   if (!(power > 0)) return balance;
+  const double credible = kCredibleHits * powerOfAHit(parts);
   for (int step = 0;; ++step) {
     progress.check();
     const std::vector<double> columns = columnSums(parts);
@@ -147,15 +189,10 @@ CutBalance balanceCut(CutParts& parts, std::span<const double> sums, Progress& p
     if (balance.after <= kBalanced || step == kBalanceSteps) break;
     for (std::size_t k = 0; k < patches.size(); ++k) {
       const double wanted = patches[k].area * sums[k];
-      if (!(wanted > 0)) continue;
-      const double times = columns[k] > 0 ? wanted / columns[k] : kMostCounts;
-      parts.tree.setCounts(
-          k, std::clamp(patches[k].counts * times, 1 / kMostCounts, kMostCounts));
+      const double times = (wanted + credible) / (std::max(0.0, columns[k]) + credible);
+      parts.tree.setCounts(k, std::clamp(patches[k].counts * times, 1 / kMostCounts, kMostCounts));
     }
-    const std::vector<double> rows = rowSums(parts);
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      if (rows[k] > 0) parts.of_a_hit[k] *= sums[k] / rows[k];
-    }
+    scaleRows(parts, sums);
   }
   return balance;
 }

@@ -16,11 +16,13 @@ double hitsApart(const CutRows::Hits& hits) { return double(hits[0]) - double(hi
 
 std::array<double, kPatchFeatures> placeOf(const CutRows& rows, std::size_t entry) {
   std::array<double, kPatchFeatures> f{};
-  for (std::size_t k = 0; k < kPatchFeatures; ++k) f[k] = rows.places[entry][k] * CutRows::stepOf(k);
+  for (std::size_t k = 0; k < kPatchFeatures; ++k)
+    f[k] = rows.places[entry][k] * CutRows::stepOf(k);
   return f;
 }
 
-double inner(const std::array<double, kPatchFeatures>& a, const std::array<double, kPatchFeatures>& b) {
+double inner(const std::array<double, kPatchFeatures>& a,
+             const std::array<double, kPatchFeatures>& b) {
   double sum = 0;
   for (std::size_t k = 0; k < kPatchFeatures; ++k) sum += a[k] * b[k];
   return sum;
@@ -121,8 +123,8 @@ std::vector<double> CutOperator::row(std::size_t i) const {
     double area = 0;
     for (const PatchTree::Patch& patch : below) area += patch.area;
     for (const PatchTree::Patch& patch : below) {
-      const auto f = fit.relative({patch.at[0], patch.at[1], patch.at[2], patch.at[3], patch.at[4],
-                                   patch.at[5]});
+      const auto f = fit.relative(
+          {patch.at[0], patch.at[1], patch.at[2], patch.at[3], patch.at[4], patch.at[5]});
       values[patch.patch] += share * patch.counts * patch.area / area * (1 + inner(f, slope));
     }
   }

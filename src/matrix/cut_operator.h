@@ -81,18 +81,18 @@ class CutOperator final : public ExchangeOperator {
 template <int kBands, class Weight>
 std::array<double, kBands> sumOfCut(const CutRows& rows, std::size_t row, const NodeField* fields,
                                     std::size_t stride, const Weight& weight) {
-    std::array<double, kBands> sum{};
+  std::array<double, kBands> sum{};
   for (std::size_t e = rows.begin(row); e < rows.ends[row]; ++e) {
-    std::array<float, kPatchFeatures> f;
+    std::array<double, kPatchFeatures> f;
     for (std::size_t k = 0; k < kPatchFeatures; ++k) {
-      f[k] = float(rows.places[e][k]) * float(CutRows::stepOf(k));
+      f[k] = double(rows.places[e][k]) * CutRows::stepOf(k);
     }
     const double times = weight(rows.hits[e]);
     const NodeField* of_node = fields + rows.nodes[e] * stride;
     for (int b = 0; b < kBands; ++b) {
-      float beside = 0;
+      double beside = 0;
       for (std::size_t k = 0; k < kPatchFeatures; ++k) beside += of_node[b].slope[k] * f[k];
-      sum[b] += times * (of_node[b].mean + double(beside));
+      sum[b] += times * (of_node[b].mean + beside);
     }
   }
   return sum;

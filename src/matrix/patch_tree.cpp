@@ -65,7 +65,8 @@ PatchTree::Fit fitOf(std::span<const PatchTree::Patch> patches) {
   const double most = spread.covariance.diagonal().maxCoeff();
   if (!(most > 0)) return fit;
   spread.covariance.diagonal().array() += kHeldVariance * most;
-  const Square inverse = spread.covariance.llt().solve(Square::Identity());
+  const Square solved = spread.covariance.llt().solve(Square::Identity());
+  const Square inverse = 0.5 * (solved + solved.transpose());  // alike from both sides, to the bit
   Eigen::Map<Eigen::Matrix<float, kPatchFeatures, kPatchFeatures>>(fit.inverse.data()) =
       inverse.cast<float>();
   return fit;
@@ -74,8 +75,8 @@ PatchTree::Fit fitOf(std::span<const PatchTree::Patch> patches) {
 /// Sums over a node, with f about its middle but not divided by its radius.
 template <int kBands>
 struct Moments {
-  std::array<double, kBands> sum{};                              ///< of area times B
-  std::array<std::array<double, kPatchFeatures>, kBands> with_f{};    ///< of area times B times f
+  std::array<double, kBands> sum{};                                 ///< of area times B
+  std::array<std::array<double, kPatchFeatures>, kBands> with_f{};  ///< of area times B times f
 };
 
 /// Fills in the fields of the nodes below one, from the leaves up.
@@ -136,7 +137,7 @@ class UpSweep {
       const std::array<double, kPatchFeatures> slope = fit.solve(mean);
       NodeField& field = fields_[node * stride_ + b];
       field.mean = moments.sum[b] / area;
-      std::copy(slope.begin(), slope.end(), field.slope.begin());
+      field.slope = slope;
     }
     return moments;
   }
@@ -159,10 +160,12 @@ std::array<double, kPatchFeatures> PatchTree::Fit::relative(
   return f;
 }
 
-std::array<double, kPatchFeatures> PatchTree::Fit::solve(const std::array<double, kPatchFeatures>& f) const {
+std::array<double, kPatchFeatures> PatchTree::Fit::solve(
+    const std::array<double, kPatchFeatures>& f) const {
   std::array<double, kPatchFeatures> solved{};
   for (std::size_t k = 0; k < kPatchFeatures; ++k) {
-    for (std::size_t m = 0; m < kPatchFeatures; ++m) solved[k] += inverse[kPatchFeatures * k + m] * f[m];
+    for (std::size_t m = 0; m < kPatchFeatures; ++m)
+      solved[k] += inverse[kPatchFeatures * k + m] * f[m];
   }
   return solved;
 }
@@ -190,7 +193,8 @@ void PatchTree::sort(std::size_t begin, std::size_t end) {
   const std::size_t middle = middleOf(begin, end);
   std::nth_element(patches.begin(), patches.begin() + std::ptrdiff_t(middle - begin), patches.end(),
                    isBefore);
-  inHalves(end - begin, [&] { sort(begin, middle); }, [&] { sort(middle, end); });
+  inHalves(
+      end - begin, [&] { sort(begin, middle); }, [&] { sort(middle, end); });
 }
 
 void PatchTree::grow() {

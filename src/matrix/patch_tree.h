@@ -100,7 +100,7 @@ void inHalves(std::size_t patches, const First& first, const Second& second) {
 /// A field as the nodes of a tree see it: its mean by area, and its slopes along f.
 struct NodeField {
   double mean = 0;
-  std::array<float, kPatchFeatures> slope{};
+  std::array<double, kPatchFeatures> slope{};
 };
 
 /// Calls some.template operator()<n>(b) for bands b to b + n - 1, all in turn, as many at once as

@@ -137,12 +137,11 @@ class EntryReader {
     hits_.resize(count);
     group_.readRows("nodes", nodes_set_, h5::numberOf<Index>(), first, count, rows.nodes.data());
     group_.readRows("hits", hits_set_, Number::u32, first, count, hits_.data());
-    group_.readRows("places", places_set_, Number::u8, first * kPatchFeatures, count * kPatchFeatures,
-                    rows.places.data());
+    group_.readRows("places", places_set_, Number::u8, first * kPatchFeatures,
+                    count * kPatchFeatures, rows.places.data());
     for (std::size_t e = 0; e < count; ++e) {
       if (rows.nodes[e] >= nodes_) group_.failAt("nodes", first + e, rows.nodes[e]);
-      rows.hits[e] = {std::uint16_t(hits_[e] & kFirstHits),
-                      std::uint16_t(hits_[e] >> kSecondHits)};
+      rows.hits[e] = {std::uint16_t(hits_[e] & kFirstHits), std::uint16_t(hits_[e] >> kSecondHits)};
     }
   }
 

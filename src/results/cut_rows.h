@@ -14,10 +14,11 @@ inline constexpr const char* kCutGroup = "cut";
 inline constexpr const char* kPairsGroup = "pairs";
 
 /// Writes order (uint32, the unknown at each place in the tree), features (f32, six columns: place
-/// and normal at each place), counts and of_a_hit (f64), starts (int64, of each place's entries, and the end),
-/// nodes (uint32), hits (uint32, those of the second set of rays 16 bits up), places (uint8, six an
-/// entry in two's complement), the attribute bias and, in the group pairs, what is known pair by
-/// pair. The tree halves its patches by number, so that its nodes follow from the order.
+/// and normal at each place), counts and of_a_hit (f64), starts (int64, of each place's entries,
+/// and the end), nodes (uint32), hits (uint32, those of the second set of rays 16 bits up), places
+/// (uint8, six an entry in two's complement), the attribute bias and, in the group pairs, what is
+/// known pair by pair. The tree halves its patches by number, so that its nodes follow from the
+/// order.
 void writeCut(h5::OutputGroup& group, const CutOperator& factors, Progress& progress);
 
 /// Counts the bytes that writeCut() adds to the file.

@@ -87,7 +87,7 @@ class Factored {
       const Eigen::Index j = next.back();
       next.pop_back();
       for (Eigen::Index i = 0; i < from.size(); ++i) {
-        if (from[i] || !(f(i, j) > 0)) continue;
+        if (from[i] || f(i, j) == 0) continue;
         from[i] = true;
         next.push_back(i);
       }

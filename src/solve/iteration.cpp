@@ -22,8 +22,8 @@ constexpr double kDivergedResidual = 1e6;
 
 System::System(const ExchangeOperator& f, int count, std::vector<double> rho, std::vector<double> e)
     : matrix(f), bands(count), reflectance(std::move(rho)), emission(std::move(e)) {
-  nonnegative =
-      std::all_of(emission.begin(), emission.end(), [](double value) { return value >= 0; });
+  nonnegative = matrix.isNonNegative() && std::all_of(emission.begin(), emission.end(),
+                                                      [](double value) { return value >= 0; });
   const auto width = std::size_t(bands);
   if (width == 0) return;
   reflecting.resize(matrix.size());

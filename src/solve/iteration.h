@@ -21,7 +21,7 @@ struct System {
   int bands = 0;
   std::vector<double> reflectance;  ///< N * bands, row-major, 0 to 1
   std::vector<double> emission;     ///< N * bands, W/m^2
-  bool nonnegative = true;          ///< no E is below 0: then neither is any B - E
+  bool nonnegative = true;          ///< no E or F is below 0: then neither is any B - E
   /// N flags: patches that reflect in some band. The others are black, B = E: their rows of the
   /// matrix are not needed to find B. Empty where every patch reflects.
   std::vector<std::uint8_t> reflecting;

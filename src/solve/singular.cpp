@@ -34,7 +34,7 @@ void markAllThatSee(const ExchangeOperator& matrix, int bands, std::vector<doubl
   const auto update = [&](std::size_t i, const double* seen) {
     for (std::size_t b = 0; b < width; ++b) {
       double& mark = marks[i * width + b];
-      if (mark != 0 || !(seen[b] > 0)) continue;
+      if (mark != 0 || seen[b] == 0) continue;
       mark = 1;
       changed = true;
     }

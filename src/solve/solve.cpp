@@ -73,16 +73,16 @@ std::vector<double> sourceOf(std::span<const double> reflectance, std::span<cons
 
 /// Where form factors are fits, some of which are below 0, what falls on a dark patch may come out
 /// below 0, within its error: it is 0, and the message says for how many patches.
-void raiseFromBelowZero(std::span<const double> reflectance, Solution& solution) {
+void raiseFromBelowZero(std::span<const double> source, Solution& solution) {
   const auto width = std::size_t(solution.bands);
   std::size_t raised = 0;
   for (std::size_t i = 0; i < solution.irradiance.size() / width; ++i) {
     bool below = false;
     for (std::size_t k = i * width; k < (i + 1) * width; ++k) {
-      const double lack = std::max(0.0, -solution.irradiance[k]);
-      below = below || lack > 0;
-      solution.irradiance[k] += lack;
-      solution.radiosity[k] += reflectance[k] * lack;
+      if (!(solution.irradiance[k] < 0)) continue;
+      below = true;
+      solution.irradiance[k] = 0;
+      solution.radiosity[k] = source[k];
     }
     raised += below ? 1 : 0;
   }
@@ -162,7 +162,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   if (summary.usable() && factors.seeNothing()) {
     summary.message += fmt::format("; {}", factors.condition());
   }
-  if (!factors.matrix->isNonNegative()) raiseFromBelowZero(reflectance, solution);
+  if (!factors.matrix->isNonNegative()) raiseFromBelowZero(source, solution);
   summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
   if (summary.usable() && summary.irradiance_error) {
     summary.message +=

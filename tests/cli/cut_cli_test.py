@@ -71,7 +71,7 @@ class CutCliTest(CliTest):
         for row in lines[1:]:
             values = [float(row[k]) for k in shares]
             self.assertGreaterEqual(min(values), 0)
-            self.assertAlmostEqual(sum(values), 1, delta=1e-5)  # slopes have single precision
+            self.assertAlmostEqual(sum(values), 1, delta=1e-6)  # rounding
 
     def test_is_refused_where_pairs_are_needed(self):
         for command, output in [("factors", "f.mtx"), ("view", "page.html")]:

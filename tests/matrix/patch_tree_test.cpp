@@ -1,4 +1,6 @@
 // The tree of patches: what a node has, and how it fits a field.
+#include "matrix/patch_tree.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,11 +10,8 @@
 #include <set>
 #include <vector>
 
-#include "matrix/patch_tree.h"
-
 namespace radiosity {
 namespace {
-
 
 /// Patches of random places, areas and normals about one axis.
 std::vector<PatchTree::Patch> randomPatches(std::size_t n, unsigned seed) {
@@ -67,8 +66,7 @@ TEST(PatchTree, OfPatchesThatAreAllAlikeIsATree) {
 
 TEST(PatchTree, IsTheSameFromItsOwnOrder) {
   const PatchTree tree(randomPatches(5000, 2));
-  const PatchTree again =
-      PatchTree::ofSorted({tree.patches().begin(), tree.patches().end()});
+  const PatchTree again = PatchTree::ofSorted({tree.patches().begin(), tree.patches().end()});
   for (std::size_t k = 0; k < tree.nodes().size(); ++k) {
     ASSERT_EQ(tree.nodes()[k].begin, again.nodes()[k].begin);
     ASSERT_EQ(tree.nodes()[k].end, again.nodes()[k].end);

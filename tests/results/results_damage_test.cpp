@@ -297,7 +297,7 @@ TEST_F(ResultsDamage, OfRowsThatAreCutIsRefusedByNameOrLeavesRows) {
         return sums.size() == good.factors->fronts.size() &&
                std::ranges::all_of(sums, [](double sum) { return std::isfinite(sum); });
       });
-  EXPECT_EQ(datasets, 13U);
+  EXPECT_EQ(datasets, 14U);
   EXPECT_GT(refused, 4 * datasets);
 }
 

@@ -79,8 +79,8 @@ TEST_F(ResultsFile, GivesBackRowsThatAreCut) {
       EXPECT_EQ(found.parts().area, parts.area);
       EXPECT_EQ(found.dense(), written.factors->matrix->dense());
       EXPECT_EQ(found.rowNorms(), written.factors->matrix->rowNorms());
-      EXPECT_NEAR(double(estimateResultsBytes(written)),
-                  double(std::filesystem::file_size(file())), 8192);
+      EXPECT_NEAR(double(estimateResultsBytes(written)), double(std::filesystem::file_size(file())),
+                  8192);
     }
   }
 }

@@ -35,15 +35,23 @@ constexpr std::size_t kTreeBytes =
     sizeof(PatchTree::Patch) + 2 * sizeof(PatchTree::Node) + sizeof(PatchTree::Fit);
 constexpr std::size_t kAccountBytes = sizeof(CutCounts) + 8 * sizeof(double);
 
-/// The known form factors of all rows; null if there are none.
+/// The known form factors of all rows; null if there are none. A row that is known whole is scaled
+/// to what its account has: if it is closed, to 1 less its backs.
 std::shared_ptr<const RowMatrix> knownPairs(const RayScene& scene, const KnownEntries& known,
-                                            const std::vector<double>& area, Precision precision) {
+                                            const std::vector<double>& area,
+                                            const std::vector<double>& fronts,
+                                            Precision precision) {
   if (known.empty()) return nullptr;
   auto pairs = std::make_shared<RowMatrix>(area, precision);
   for (std::size_t k = 0; k < scene.size(); ++k) {
+    if (!(scene.area()[k] > 0)) continue;
     std::vector<std::pair<Index, double>> entries;
+    double times = 1 / scene.area()[k];
+    if (known.rowAt(k) != nullptr && known.share(k, scene.area()[k]) > 0) {
+      times *= fronts[scene.order()[k]] / known.share(k, scene.area()[k]);
+    }
     for (const KnownEntries::Entry& entry : known.at(k)) {
-      const double factor = entry.exchange / scene.area()[k];
+      const double factor = times * entry.exchange;
       if (factor > 0) entries.emplace_back(scene.order()[entry.position], factor);
     }
     std::ranges::sort(entries);
@@ -161,11 +169,11 @@ FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
     const std::size_t k = cutter.positionOf(place);
     const Index i = scene.order()[k];
     const CutCounts& counts = blocks.counts()[place];
-    const bool is_closed = closed.keeps(i, counts.rays > 0 ? counts.sky / counts.rays : 0.0,
-                                        kMostLeaks);
+    const bool is_closed =
+        closed.keeps(i, counts.rays > 0 ? counts.sky / counts.rays : 0.0, kMostLeaks);
     if (is_closed) report.cut.leaked += std::size_t(counts.sky);
-    parts.of_a_hit[place] = setAccount(counts, known.share(k, scene.area()[k]), is_closed, i,
-                                       result, seen[i]);
+    parts.of_a_hit[place] =
+        setAccount(counts, known.share(k, scene.area()[k]), is_closed, i, result, seen[i]);
   }
   for (std::size_t k = 0; k < n; ++k) {
     if (known.rowAt(k) == nullptr) continue;
@@ -184,7 +192,7 @@ FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
     const std::size_t k = cutter.positionOf(place);
     sums.push_back(result.fronts[scene.order()[k]] - known.share(k, scene.area()[k]));
   }
-  parts.pairs = knownPairs(scene, known, area, options().storedPrecision());
+  parts.pairs = knownPairs(scene, known, area, result.fronts, options().storedPrecision());
   parts.bias = plan_.bias;
   parts.blocks = blocks.takeRows();
   parts.area = std::move(area);

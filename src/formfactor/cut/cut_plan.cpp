@@ -47,9 +47,7 @@ struct Trial {
   float size = 0;   ///< of a lamp: within this distance it is hardly brighter
 };
 
-glm::vec3 placeOf(const PatchTree::Patch& patch) {
-  return {patch.at[0], patch.at[1], patch.at[2]};
-}
+glm::vec3 placeOf(const PatchTree::Patch& patch) { return {patch.at[0], patch.at[1], patch.at[2]}; }
 
 /// Of a bent cluster the mean is shorter.
 glm::vec3 normalOf(const PatchTree::Patch& patch) {
@@ -107,8 +105,8 @@ void shine(const RayScene& scene, std::span<const PatchTree::Patch> patches, con
   }
   traceLengths(scene.caster().embree(), from, along, lengths);
   for (std::size_t k = 0; k < patches.size(); ++k) {
-    const float reach = trial.is_sun ? std::numeric_limits<float>::infinity()
-                                     : kReached * distance[k];
+    const float reach =
+        trial.is_sun ? std::numeric_limits<float>::infinity() : kReached * distance[k];
     const float cosine = glm::dot(along[k], normalOf(patches[k]));
     light[k] = 0;
     if (cosine <= 0 || lengths[k] < reach) continue;
@@ -198,7 +196,7 @@ void measureRays(const RayScene& scene, std::span<const double> light, SampleRow
 }
 
 /// The root mean square over the trials of what rows are off by, relative to all of each trial.
-double relativeError(std::span<const SampleRow> rows, OfTrials SampleRow::* off) {
+double relativeError(std::span<const SampleRow> rows, OfTrials SampleRow::*off) {
   double sum = 0;
   int lit = 0;
   for (std::size_t t = 0; t < kTrials; ++t) {
@@ -275,10 +273,9 @@ class Trials {
       CutRows rows;
       cutter.cut(sample.place, sample.row, rows);
       entries[k] = rows.nodes.size();
-      const OfTrials cut =
-          sumOfCut<kTrials>(rows, 0, fields_.data(), kTrials, [](const CutRows::Hits& hits) {
-            return double(hits[0]) + double(hits[1]);
-          });
+      const OfTrials cut = sumOfCut<kTrials>(
+          rows, 0, fields_.data(), kTrials,
+          [](const CutRows::Hits& hits) { return double(hits[0]) + double(hits[1]); });
       for (std::size_t t = 0; t < kTrials; ++t) {
         const double each = sample.row.counted() > 0 ? 1 / sample.row.counted() : 0.0;
         sample.off[t] = each * cut[t] - sample.whole[t];
@@ -303,8 +300,8 @@ class Trials {
 
 }  // namespace
 
-CutPlan planCuts(const RayScene& scene, const PatchTree& tree, double tolerance,
-                 std::uint64_t seed, Progress& progress) {
+CutPlan planCuts(const RayScene& scene, const PatchTree& tree, double tolerance, std::uint64_t seed,
+                 Progress& progress) {
   if (tree.patches().empty()) return {};
   return Trials(scene, tree, seed, progress).plan(tolerance);
 }

@@ -16,13 +16,13 @@ struct CutPlan {
   /// cutting their rows.
   double noise = 0;
   double bias = 0;
-  double entries = 0;  ///< of a row
-  double seconds = 0;  ///< a row, of one thread by the clock
+  double entries = 0;   ///< of a row
+  double seconds = 0;   ///< a row, of one thread by the clock
   bool is_lit = false;  ///< whether rows have seen anything that the trial lights shine on
 };
 
 /// `tolerance`: of irradiance. Throws Cancelled.
-CutPlan planCuts(const RayScene& scene, const PatchTree& tree, double tolerance,
-                 std::uint64_t seed, Progress& progress);
+CutPlan planCuts(const RayScene& scene, const PatchTree& tree, double tolerance, std::uint64_t seed,
+                 Progress& progress);
 
 }  // namespace radiosity

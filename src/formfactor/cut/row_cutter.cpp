@@ -8,7 +8,6 @@
 namespace radiosity {
 namespace {
 
-
 struct HitPatch {
   Index place;
   std::array<std::uint32_t, kReplicates> hits;
@@ -30,9 +29,8 @@ PatchTree treeOfUnknowns(const PatchMesh& mesh, const RayScene& scene, const Kno
     const Index unknown = scene.order()[k];
     const glm::vec3 at = scene.caster().place(place[unknown] / area);
     const glm::vec3 facing(normal[unknown] / area);
-    patches.push_back({.at = {at.x, at.y, at.z, facing.x, facing.y, facing.z},
-                       .area = area,
-                       .patch = unknown});
+    patches.push_back(
+        {.at = {at.x, at.y, at.z, facing.x, facing.y, facing.z}, .area = area, .patch = unknown});
   }
   return PatchTree(std::move(patches));
 }
@@ -58,8 +56,8 @@ class RowCutter::Descent {
     const PatchTree::Node& of = tree_.nodes()[node];
     if (of.isLeaf() || isSmall(tree_.fit(node))) return add(node, hits);
     const std::size_t second = tree_.second(node);
-    const auto middle = std::ranges::lower_bound(hits, tree_.nodes()[second].begin, {},
-                                                 &HitPatch::place);
+    const auto middle =
+        std::ranges::lower_bound(hits, tree_.nodes()[second].begin, {}, &HitPatch::place);
     const auto first = std::size_t(middle - hits.begin());
     (*this)(tree_.first(node), hits.first(first));
     (*this)(second, hits.subspan(first));

@@ -17,9 +17,9 @@ PatchTree treeOfUnknowns(const PatchMesh& mesh, const RayScene& scene, const Kno
 
 /// What the rays of a row count beside its cut. Each hit stands for itself.
 struct CutCounts {
-  double rays = 0;             ///< of both replicates; RayRow::counted()
-  double sky = 0;              ///< of these, into the sky
-  double known = 0;            ///< on unknowns that are not in the tree
+  double rays = 0;              ///< of both replicates; RayRow::counted()
+  double sky = 0;               ///< of these, into the sky
+  double known = 0;             ///< on unknowns that are not in the tree
   std::vector<SeenBack> backs;  ///< surfaces seen from behind, and hits in place of shares
 };
 
