@@ -11,11 +11,11 @@
 namespace radiosity::h5 {
 
 std::vector<unsigned char> storedChunk(std::span<const unsigned char> data) {
-  // Words of 16 bits, the first byte being the higher one.
+  // Words of 16 bits, the first byte being the higher one; to the last of odd bytes belongs a 0.
   std::uint64_t sum = 0;
   std::uint64_t sum_of_sums = 0;  // below 2^64, since there are less than 2^24 words
-  for (std::size_t k = 0; k + 1 < data.size(); k += 2) {
-    sum += std::uint64_t(data[k]) << 8 | data[k + 1];
+  for (std::size_t k = 0; k < data.size(); k += 2) {
+    sum += std::uint64_t(data[k]) << 8 | (k + 1 < data.size() ? data[k + 1] : 0U);
     sum_of_sums += sum;
   }
   // HDF5 adds the carries of 16 bits, which gives 65535, not 0, for multiples of it.

@@ -49,6 +49,16 @@ class ColumnWriterTest : public FolderTest {
   }
 };
 
+TEST_F(ColumnWriterTest, HDF5ReadsBytesOfAnyLength) {
+  std::mt19937 random(2);
+  // Chunks of an even and of an odd number of bytes.
+  for (const std::size_t count : {kCompactBytes + 1, kCompactBytes + 2, 2 * kChunkBytes + 1}) {
+    std::vector<std::uint8_t> values(count);
+    for (std::uint8_t& value : values) value = std::uint8_t(random());
+    expectBack(values);
+  }
+}
+
 TEST_F(ColumnWriterTest, HDF5ReadsColumnsOfAnyLength) {
   std::mt19937 random(1);
   const std::size_t chunk = kChunkBytes / sizeof(std::int32_t);
