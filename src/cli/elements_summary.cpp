@@ -4,6 +4,7 @@
 
 #include "cli/field_lines.h"
 #include "cli/summaries.h"
+#include "radiosity/names.h"
 
 namespace radiosity::cli {
 namespace {
@@ -34,8 +35,11 @@ std::string largestError(const ElementReport& r, double of_matrix) {
 }
 
 void reportMatrixError(Report& report, const FormFactors& factors) {
-  if (factors.error.empty()) {
-    report.text("matrix_error", "error of the matrix", "not known of hemicubes");
+  if (factors.method == FormFactorMethod::cut) {
+    report.number("irradiance_error", "irradiance off by about", factors.report.cut.error());
+  } else if (factors.error.empty()) {
+    report.text("matrix_error", "error of the matrix",
+                "not known by " + nameOf(kFactorsFromNames, factors.method));
   } else {
     report.number("matrix_error", "error of the matrix", factors.report.error_figure);
   }

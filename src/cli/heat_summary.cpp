@@ -69,6 +69,10 @@ void balanceFigures(Report& report, const HeatBalance& b, double given_off) {
 
 /// Reports the accuracy of the form factors and its effect on H.
 void factorError(Report& report, const FormFactors& factors) {
+  if (factors.method == FormFactorMethod::cut) {
+    report.number("irradiance_error", "irradiance off by about", factors.report.cut.error());
+    return;
+  }
   if (factors.error.empty()) {
     report.text("factor_error", "error of form factors",
                 "unknown by " + nameOf(kFactorsFromNames, factors.method) +

@@ -75,7 +75,10 @@ namespace {
 /// Whether what is written, or shared by processes, is made of form factors one by one.
 bool needsPairs(const Session& session) {
   const Request& request = session.request;
-  return session.processes != nullptr || request.command == Command::view ||
+  // Tables of `factors` are for who wants single ones: rows that are cut have to be asked for.
+  const bool lists = request.command == Command::factors &&
+                     request.apply(FormFactorOptions()).method == FormFactorMethod::automatic;
+  return session.processes != nullptr || request.command == Command::view || lists ||
          std::ranges::any_of(parseOutputs(request), [](const Output& output) {
            return output.format == Format::matrix_market;
          });

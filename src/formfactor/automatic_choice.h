@@ -20,8 +20,8 @@ Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Pro
 /// where patches are many.
 FormFactorMethod besideExact(const PatchMesh& mesh, const FormFactorOptions& options);
 
-/// Chosen automatically, exact is given up, and besideExact() takes its place, where it takes far longer than
-/// was foreseen: then nothing. `seconds`: those foreseen.
+/// Chosen automatically, exact is given up, and besideExact() takes its place, where it takes far
+/// longer than was foreseen: then nothing. `seconds`: those foreseen.
 std::optional<FormFactors> computeInTime(const PreparedMethod& exact, double seconds,
                                          Progress& progress, RowJournal* journal);
 /// The reason for that.

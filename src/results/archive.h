@@ -104,6 +104,11 @@ class FieldWriter {
   bool present(const char* /*name*/, const std::optional<T>& value) {
     return value.has_value();
   }
+  /// A group that files of earlier versions may lack: what it is of stays as it is then.
+  template <class Body>
+  void laterGroup(const char* name, const Body& body) {
+    group(name, body);
+  }
   template <class Body>
   void group(const char* name, const Body& body) {
     auto inner_sink = sink_->group(name);
@@ -236,6 +241,10 @@ class FieldReader {
   /// "NAME WHAT; make the file again".
   [[noreturn]] void fail(const char* name, const std::string& what) const {
     source_->fail(name, what);
+  }
+  template <class Body>
+  void laterGroup(const char* name, const Body& body) {
+    if (source_->has(name)) group(name, body);
   }
   template <class Body>
   void group(const char* name, const Body& body) {

@@ -44,7 +44,7 @@ class ReportFields {
     }
   }
   void part(const char* name, auto& report) {
-    archive_.group(name, [&](auto& inner) { describe(inner, report); });
+    archive_.laterGroup(name, [&](auto& inner) { describe(inner, report); });
   }
   void table(const char* name, auto& records, const auto& columns) {
     archive_.table(name, records, columns);

@@ -46,8 +46,9 @@ std::optional<double> boundFrom(const System& system, const Fields& fields, cons
 // is a rough solution of M w = 1: if 1 - M w is within 0.1, then v = M w >= 0.9 > 0. The products
 // with the first w and the last are worth a sweep each.
 //
-// Where some F_ij are below 0, |F| takes the place of F in M and v: it is an H-matrix, whose inverse
-// is within that of its comparison matrix (Ostrowski 1937). Of |F| the sums of rows are known.
+// Where some F_ij are below 0, |F| takes the place of F in M and v: I - rho F is an H-matrix, whose
+// inverse is within that of its comparison matrix I - rho |F| (Ostrowski 1937). Of |F| the sums of
+// rows are known.
 std::optional<double> certifiedErrorBound(const System& system, const Fields& fields,
                                           int max_sweeps, Progress& progress) {
   const std::vector<double> ones(fields.radiosity.size(), 1.0);

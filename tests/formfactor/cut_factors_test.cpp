@@ -29,6 +29,7 @@ FormFactorOptions byCuts(double tolerance) {
 /// lights that rows were tried under.
 std::vector<double> patchyLight(const PatchMesh& mesh) {
   std::vector<double> light;
+  light.reserve(mesh.size());
   for (const Vec3& at : mesh.centroid) {
     light.push_back(std::sin(3 * at.x) * std::cos(2 * at.y + at.z) > 0.2 ? 1.0 + at.y * at.y : 0.1);
   }

@@ -256,6 +256,15 @@ class Edit {
   hid_t file_;
 };
 
+// A method that came later has a part of the report of its own.
+TEST_F(ResultsFile, ReadsFilesWithoutAPartOfAReport) {
+  Results written = sample::results(3, Precision::single_precision);
+  write(written);
+  Edit(file()).remove("/form_factors/report/cut");
+  written.factors->report.cut = {};
+  EXPECT_TRUE(sample::same(written, readResults(file())));
+}
+
 TEST_F(ResultsFile, NamesFieldsThatAnotherProgramChanged) {
   const Results good = sample::results(3, Precision::single_precision);
   const auto expectAfter = [&](const auto& change, const std::string& part) {
