@@ -19,6 +19,10 @@ class ClosedRows {
   bool closed(std::size_t row) const { return state_[row] == kClosed; }
   bool any() const;
 
+  /// Of the view of a closed row rays, or pixels, may miss this share, between faces that meet but
+  /// for rounding.
+  static constexpr double kMostLeaks = 1e-3;
+
   /// Whether a row is closed of which the method misses the share `missing`, which should be `most`
   /// at most: else it is open from now on. Thread-safe for different rows.
   bool keeps(std::size_t row, double missing, double most) {

@@ -30,6 +30,8 @@ std::vector<std::string> unusedOptions(const py::dict& given, const std::string&
 std::shared_ptr<FactorsHandle> formFactors(std::shared_ptr<MeshHandle> mesh, const py::dict& given,
                                            const py::object& report) {
   auto options = optionsFrom<FormFactorOptions>(given);
+  // Its arrays list them: rows that are cut have to be asked for.
+  options.needs_pairs = options.method == FormFactorMethod::automatic;
   auto handle = std::make_shared<FactorsHandle>();
   handle->mesh = std::move(mesh);
   handle->key = [options, mesh = handle->mesh] { return keyOfFactors(options, mesh->result.mesh); };

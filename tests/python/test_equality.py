@@ -35,6 +35,16 @@ def test_form_factors_and_light_are_the_same(run_program, method, options):
     assert np.array_equal(mesh.vertices, stored(path, "mesh/vertices"))
 
 
+def test_rows_that_are_cut_solve_and_are_no_pairs(run_program):
+    folder = run_program("solve", SCENE, "--patches", 80, "--method", "cut", "-o", "s.h5")
+    F = rad.form_factors(rad.mesh(rad.load(SCENE), patches=80), method="cut")
+    assert F.method == "cut"
+    light = rad.solve(F)
+    assert np.array_equal(light.radiosity, stored(folder / "s.h5", "solution/radiosity"))
+    with pytest.raises(rad.InputError, match="not stored pair by pair"):
+        F.csr
+
+
 def test_rows_of_clusters_are_the_same(run_program):
     scene = "data/two-rooms.obj"
     folder = run_program("solve", scene, "--patches", 10, "--method", "rays", "--tolerance", 0.1,

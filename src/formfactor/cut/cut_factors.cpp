@@ -24,11 +24,6 @@
 namespace radiosity {
 namespace {
 
-/// Of the rays of a closed row a share this large may slip between faces, which meet but for
-/// rounding.
-constexpr double kMostLeaks = 1e-3;
-/// Exact rows may be this much work for each ray: about half of what it takes.
-constexpr double kExactRowWork = 7;
 /// Bytes of an entry, a node in the tree with its patch, and an account.
 constexpr double kEntryBytes = sizeof(Index) + sizeof(CutRows::Hits) + sizeof(CutRows::Place);
 constexpr std::size_t kTreeBytes =
@@ -71,7 +66,7 @@ class Cut final : public PreparedMethod {
   Cut(const PatchMesh& mesh, const FormFactorOptions& options)
       : PreparedMethod(FormFactorMethod::cut, mesh, options) {}
   std::optional<RoomForExactRows> roomForExactRows() const override {
-    return RoomForExactRows{kExactRowWork * kReplicates * plan_.rays * double(made(scene_).size()),
+    return RoomForExactRows{kExactWorkARay * kReplicates * plan_.rays * double(made(scene_).size()),
                             bytes_};
   }
 
@@ -79,6 +74,7 @@ class Cut final : public PreparedMethod {
   Cost foresee(Progress& progress) override;
   FormFactors make(KnownRows exact, const RowRun& run) const override;
   std::shared_ptr<const ExchangeMatrix> share(const RowRun& run) const override;
+  CutReport reportOfPlan() const;
 
   std::optional<RayScene> scene_;
   CutPlan plan_;
@@ -143,6 +139,44 @@ void noteShort(const CutPlan& plan, double tolerance, FormFactorReport& report) 
   }
 }
 
+/// Fills in the accounts of all rows, and what a hit counts.
+void setAccounts(const RowCutter& cutter, const std::vector<CutCounts>& counts,
+                 const KnownEntries& known, ClosedRows& closed, FormFactors& result,
+                 std::vector<std::vector<SeenBack>>& seen, std::vector<double>& of_a_hit) {
+  const RayScene& scene = cutter.scene();
+  for (std::size_t place = 0; place < counts.size(); ++place) {
+    const std::size_t k = cutter.positionOf(place);
+    const Index i = scene.order()[k];
+    const CutCounts& of_row = counts[place];
+    const double leaking = of_row.rays > 0 ? of_row.sky / of_row.rays : 0.0;
+    const bool is_closed = closed.keeps(i, leaking, ClosedRows::kMostLeaks);
+    if (is_closed) result.report.cut.leaked += std::size_t(of_row.sky);
+    of_a_hit.push_back(
+        setAccount(of_row, known.share(k, scene.area()[k]), is_closed, i, result, seen[i]));
+  }
+  for (std::size_t k = 0; k < scene.size(); ++k) {
+    if (known.rowAt(k) == nullptr) continue;
+    const Index i = scene.order()[k];
+    const RowAccount account = known.account(k, scene.area()[k], closed.closed(i));
+    result.fronts[i] = account.fronts;
+    result.backs[i] = account.backs;
+    result.sky[i] = account.sky;
+    seen[i] = known.rowAt(k)->backs;
+  }
+}
+
+/// What each row of the tree sees of fronts that are not known pair by pair.
+std::vector<double> sumsOfRows(const RowCutter& cutter, const KnownEntries& known,
+                               const std::vector<double>& fronts) {
+  const RayScene& scene = cutter.scene();
+  std::vector<double> sums(cutter.tree().patches().size());
+  for (std::size_t place = 0; place < sums.size(); ++place) {
+    const std::size_t k = cutter.positionOf(place);
+    sums[place] = fronts[scene.order()[k]] - known.share(k, scene.area()[k]);
+  }
+  return sums;
+}
+
 FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
   const Stopwatch watch;
   const RayScene& scene = made(scene_);
@@ -152,66 +186,48 @@ FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
   result.fronts.assign(n, 0.0);
   result.backs.assign(n, 0.0);
   result.sky.assign(n, 0.0);
-  std::vector<double> area(n);
-  for (std::size_t k = 0; k < n; ++k) area[scene.order()[k]] = scene.area()[k];
-  report.empty_rows = std::size_t(std::ranges::count(area, 0.0));
-  report.cut.seconds_prepare = seconds_preparing_ + exact.seconds;
-  const KnownEntries known(std::move(exact.rows), scene.position());
   CutParts parts;
+  parts.area.resize(n);
+  for (std::size_t k = 0; k < n; ++k) parts.area[scene.order()[k]] = scene.area()[k];
+  report.empty_rows = std::size_t(std::ranges::count(parts.area, 0.0));
+  report.cut = reportOfPlan();
+  report.cut.seconds_prepare += exact.seconds;
+  const KnownEntries known(std::move(exact.rows), scene.position());
   parts.tree = treeOfUnknowns(mesh(), scene, known);
+  parts.bias = plan_.bias;
   const RowCutter cutter(scene, parts.tree, plan_.opening);
   CutBlocks blocks(cutter, plan_.rays, run.progress);
   makeAllRows(blocks, run);
   ClosedRows closed(mesh(), true);
   std::vector<std::vector<SeenBack>> seen(n);
-  parts.of_a_hit.resize(parts.tree.patches().size());
-  for (std::size_t place = 0; place < parts.of_a_hit.size(); ++place) {
-    const std::size_t k = cutter.positionOf(place);
-    const Index i = scene.order()[k];
-    const CutCounts& counts = blocks.counts()[place];
-    const bool is_closed =
-        closed.keeps(i, counts.rays > 0 ? counts.sky / counts.rays : 0.0, kMostLeaks);
-    if (is_closed) report.cut.leaked += std::size_t(counts.sky);
-    parts.of_a_hit[place] =
-        setAccount(counts, known.share(k, scene.area()[k]), is_closed, i, result, seen[i]);
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    if (known.rowAt(k) == nullptr) continue;
-    const Index i = scene.order()[k];
-    const RowAccount account = known.account(k, scene.area()[k], closed.closed(i));
-    result.fronts[i] = account.fronts;
-    result.backs[i] = account.backs;
-    result.sky[i] = account.sky;
-    seen[i] = known.rowAt(k)->backs;
-  }
+  setAccounts(cutter, blocks.counts(), known, closed, result, seen, parts.of_a_hit);
   closed.report(mesh(), report);
   closed.balance(result);
-  accountForBacks(mesh(), scene.order(), area, seen, result);
-  std::vector<double> sums;
-  for (std::size_t place = 0; place < parts.of_a_hit.size(); ++place) {
-    const std::size_t k = cutter.positionOf(place);
-    sums.push_back(result.fronts[scene.order()[k]] - known.share(k, scene.area()[k]));
-  }
-  parts.pairs = knownPairs(scene, known, area, result.fronts, options().storedPrecision());
-  parts.bias = plan_.bias;
-  parts.blocks = blocks.takeRows();
-  parts.area = std::move(area);
-  const CutBalance balance = balanceCut(parts, sums, run.progress);
-  CutReport& cut = report.cut;
-  cut.triangles = scene.caster().triangles();
-  cut.rays_a_row = kReplicates * std::size_t(plan_.rays);
-  cut.rays = cut.rays_a_row * parts.tree.patches().size();
-  cut.opening = plan_.opening;
-  cut.noise = plan_.noise;
-  cut.bias = plan_.bias;
-  cut.unbalanced_before = balance.before;
-  cut.unbalanced = balance.after;
+  accountForBacks(mesh(), scene.order(), parts.area, seen, result);
   noteShort(plan_, tolerance(), report);
+  parts.blocks = blocks.takeRows();
+  parts.pairs = knownPairs(scene, known, parts.area, result.fronts, options().storedPrecision());
+  const CutBalance balance =
+      balanceCut(parts, sumsOfRows(cutter, known, result.fronts), run.progress);
+  report.cut.unbalanced_before = balance.before;
+  report.cut.unbalanced = balance.after;
+  report.cut.rays = report.cut.rays_a_row * parts.tree.patches().size();
   const auto matrix = std::make_shared<CutOperator>(std::move(parts));
-  cut.entries = matrix->entries();
-  cut.seconds_rows = watch.seconds();
+  report.cut.entries = matrix->entries();
+  report.cut.seconds_rows = watch.seconds();
   result.matrix = matrix;
   return result;
+}
+
+CutReport Cut::reportOfPlan() const {
+  CutReport report;
+  report.triangles = made(scene_).caster().triangles();
+  report.rays_a_row = kReplicates * std::size_t(plan_.rays);
+  report.opening = plan_.opening;
+  report.noise = plan_.noise;
+  report.bias = plan_.bias;
+  report.seconds_prepare = seconds_preparing_;
+  return report;
 }
 
 std::shared_ptr<const ExchangeMatrix> Cut::share(const RowRun& /*run*/) const {

@@ -112,7 +112,7 @@ void HemicubeBlocks::store(std::size_t i, const HemicubeView& view, HemicubeRepo
   PackedRow& row = worker.row;
   FormFactors& result = rows_.result;
   const std::size_t n = result.fronts.size();
-  const bool closed = rows_.closed.keeps(i, view.sky, kMostLeaks);
+  const bool closed = rows_.closed.keeps(i, view.sky, ClosedRows::kMostLeaks);
   row.pack(view, n);
   const double sky = closed ? 0.0 : view.sky;
   double rest = closed ? 1 / (1 - view.sky) : 1.0;

@@ -44,10 +44,6 @@ struct HemicubeRows {
 /// process 0 gets their accounts and counts.
 class HemicubeBlocks final : public RowBlocks {
  public:
-  /// Of the view of a closed row a share this large may show between faces, which meet but for
-  /// rounding: some pixels.
-  static constexpr double kMostLeaks = 1e-3;
-
   HemicubeBlocks(const HemicubeRows& rows, Progress& progress);
 
   /// Of all rows, once they are made. In process 0.

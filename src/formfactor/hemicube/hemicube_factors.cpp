@@ -91,7 +91,7 @@ std::vector<double> skyErrors(const ClosedRows& closed, double smallest, const F
   std::vector<double> errors(f.sky.size(), 0.0);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (closed.closed(i) || !(f.fronts[i] > 0)) continue;
-    errors[i] = std::sqrt(HemicubeBlocks::kMostLeaks * smallest / f.matrix->area()[i]);
+    errors[i] = std::sqrt(ClosedRows::kMostLeaks * smallest / f.matrix->area()[i]);
   }
   return errors;
 }

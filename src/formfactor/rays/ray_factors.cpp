@@ -28,9 +28,6 @@ namespace {
 
 /// The tolerance to which single precision can restore rows.
 constexpr double kClosureTolerance = 1e-9;
-/// Of the rays of a closed row a share this large may slip between faces, which meet but for
-/// rounding.
-constexpr double kMostLeaks = 1e-3;
 
 /// What rows see beside the matrix, and the errors of its shares: K values each.
 struct Beside {
@@ -278,22 +275,19 @@ ClosedRows closedRows(const PatchMesh& mesh, const RayScene& scene, const std::v
                       FormFactorReport& report) {
   ClosedRows closed(mesh, true);
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (!closed.keeps(scene.order()[k], rows[k].skyShare(), kMostLeaks)) continue;
+    if (!closed.keeps(scene.order()[k], rows[k].skyShare(), ClosedRows::kMostLeaks)) continue;
     report.rays.leaked += rows[k].sky[0] + rows[k].sky[1];
   }
   closed.report(mesh, report);
   return closed;
 }
 
-/// Exact rows may be this much work for each ray: about half of what it takes.
-constexpr double kExactRowWork = 7;
-
 class Rays final : public PreparedMethod {
  public:
   Rays(const PatchMesh& mesh, const FormFactorOptions& options)
       : PreparedMethod(FormFactorMethod::rays, mesh, options) {}
   std::optional<RoomForExactRows> roomForExactRows() const override {
-    return RoomForExactRows{kExactRowWork * estimate_.rays, estimate_.memory.bytes};
+    return RoomForExactRows{kExactWorkARay * estimate_.rays, estimate_.memory.bytes};
   }
 
  private:

@@ -24,6 +24,10 @@ inline constexpr double kNewEntries = 0.3;
 /// Seconds for counting, merging and closing an entry of the rows, beside the rays.
 inline constexpr double kEntrySeconds = 12e-9;
 
+/// Exact rows of emitters may be this much work (RoomForExactRows) for each ray: about half of what
+/// it takes.
+inline constexpr double kExactWorkARay = 7;
+
 // ---- The rounds (ray_rounds.cpp)
 
 /// Bounds of the order that two rounds show.

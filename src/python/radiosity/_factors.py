@@ -137,12 +137,12 @@ class FormFactors(Fixed):
     @property
     def error(self) -> np.ndarray:
         """(rows,) float64: error figures; the 2-norm of a row's error is below its own in about 99%
-        of rows. Empty where the method has none (hemicube). A view."""
+        of rows. Empty where the method has none (cut, hemicube). A view."""
         return self._handle.error
 
     @property
     def method(self) -> str:
-        """exact, rays or hemicube; of from_csr() "matrix", of a matrix in a file "file"."""
+        """exact, rays, cut or hemicube; of from_csr() "matrix", of a matrix in a file "file"."""
         return self._handle.method
 
     @property
@@ -153,8 +153,8 @@ class FormFactors(Fixed):
         matrix's, relative; largest_row_error: how far a row's sum is above 1, or off 1 if closed.
         reciprocity_residual: of hemicubes. symmetrized, closure_enforced, closure (a dict: residuals
         before and after, moves). seconds, seconds_plan, estimated_seconds, matrix_bytes,
-        estimated_bytes. polygons, empty_rows, exact_rows, simd_target. exact, rays: dicts of the work
-        that these methods did or skipped, and its seconds; of hemicubes: hemicubes, pixels,
+        estimated_bytes. polygons, empty_rows, exact_rows, simd_target. exact, rays, cut: dicts of the
+        work that these methods did or skipped, and its seconds; of hemicubes: hemicubes, pixels,
         rasterised_polygons, skipped_..., near_pairs, capped. notes: a dict of severity and text each.
         """
         return self._handle.report
@@ -265,12 +265,14 @@ def form_factors(mesh: Mesh, tolerance: Optional[float] = None, *, method: str =
                  progress: Progress = None, **others: Any) -> FormFactors:
     """Computes the form factors of a mesh.
 
-    tolerance: relative to the mean form factor, 1e-12 to 0.1 (default: exact 1e-3, rays 1e-2).
-    method: auto, exact, rays or hemicube. closure: off, report or enforce. precision: single or
-    double (default: single unless the tolerance asks for more). memory_limit: bytes, 0: none; beyond
-    it rows are kept in scratch_folder, where one is given. seed: of the directions of rays and of the
-    turns of hemicubes about their normals; another one gives another sample of the same quality.
-    exact_emitters: form factors to and from what emits are exact, also beside rays and hemicubes.
+    tolerance: relative to the mean form factor, 1e-12 to 0.1 (default: exact 1e-3, rays 1e-2); of cut
+    that of irradiance (2e-2). method: auto (exact or rays), exact, rays, cut or hemicube. closure: off,
+    report or enforce. precision: single or double (default: single unless the tolerance asks for more).
+    memory_limit: bytes, 0: none; beyond it rows are kept in scratch_folder, where one is given. seed:
+    of the directions of rays and of the turns of hemicubes about their normals; another one gives
+    another sample of the same quality. exact_emitters: form factors to and from what emits are exact,
+    also beside rays, cut and hemicubes. cut is for many patches: its rows hold nodes of a tree in place
+    of pairs; they solve as others do, but csr cannot list them.
 
     Of hemicubes alone: resolution, pixels along an edge, even, 16 to 4096. eye: who draws them: cpu
     (the same bits on every machine), gl (OpenGL) or auto (OpenGL where there is hardware for it).
