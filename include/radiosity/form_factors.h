@@ -75,13 +75,13 @@ struct FormFactorOptions {
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction from the item buffer.
   bool near_exact = false;
-  /// Rays and hemicube: unknowns (patches, or clusters if there are any), ascending, whose exchange
-  /// with all others is exact: those that emit (emittingUnknowns()), since all other light comes
-  /// from them. In a hemicube's row what else was seen is scaled to the rest of 1. They are left to
-  /// rays or hemicubes, and the report says so, if exact rows would take more than half as long as
-  /// these and more than some seconds, or if they have more than a million pairs. Exact: what
-  /// other unknowns get from these is good to 5% itself where it is 1% of the mean or more, if they
-  /// have a million pairs at most. Neither if onlyForSources().
+  /// Rays, cut, hemicube: unknowns (patches, or clusters if there are any), ascending, whose
+  /// exchange with all others is exact: those that emit (emittingUnknowns()), since all other light
+  /// comes from them. In a hemicube's row what else was seen is scaled to the rest of 1. They are
+  /// left to rays or hemicubes, and the report says so, if exact rows would take more than half as
+  /// long as these and more than some seconds, or if they have more than a million pairs. Exact:
+  /// what other unknowns get from these is good to 5% itself where it is 1% of the mean or more, if
+  /// they have a million pairs at most. Neither if onlyForSources().
   std::vector<Index> exact_rows;
   bool exact_emitters = true;    ///< false: exact_rows are estimated as all others
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
@@ -157,8 +157,9 @@ struct FormFactorOptions {
     list({.name = "exact_emitters",
           .option = "emitters",
           .value = "exact|estimated",
-          .help = "rays, hemicube: form factors to and from what emits are exact, or estimated as "
-                  "all others",
+          .help =
+              "rays, cut, hemicube: form factors to and from what emits are exact, or estimated as "
+              "all others",
           .in_key = InKey::if_changed,
           .on = "exact",
           .off = "estimated"},
@@ -398,8 +399,8 @@ struct FormFactorReport {
   std::string method_reason;   ///< why this method, if it was chosen automatically
   std::size_t empty_rows = 0;  ///< degenerate patches: no hemicube, no elements
   std::size_t polygons = 0;    ///< planar polygons of the mesh
-  /// Rays and hemicube: rows that are exact, not estimated; empty if FormFactorOptions::exact_rows
-  /// asked for none.
+  /// Rays, cut, hemicube: rows that are exact, not estimated; empty if
+  /// FormFactorOptions::exact_rows asked for none.
   std::optional<std::size_t> exact_rows;
   std::string simd_target;       ///< Highway's name, e.g. "AVX3", "SCALAR"
   double seconds = 0;            ///< in total
@@ -466,7 +467,7 @@ struct FormFactors {
   std::vector<double> backs_by_surface;
   /// Exact and rays: N error figures. sqrt(sum_j (F_ij - true F_ij)^2), with black backs among the
   /// j, stays below error[i] in about 99% of rows. Exact: the median of the figures is mostly 4 to
-  /// 14 times the true one. Hemicube: empty.
+  /// 14 times the true one. Cut and hemicube: empty.
   std::vector<double> error;
   FormFactorMethod method = FormFactorMethod::matrix;  ///< never automatic
   FormFactorReport report;
