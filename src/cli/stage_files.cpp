@@ -68,10 +68,6 @@ void requireSolver(const PipelineOptions& options) {
       method.word, method.uses("symmetrize") ? ", or merge the rows with --symmetrize" : ""));
 }
 
-}  // namespace
-
-namespace {
-
 /// Whether what is written, or shared by processes, is made of form factors one by one.
 bool needsPairs(const Session& session) {
   const Request& request = session.request;

@@ -22,8 +22,6 @@ constexpr double kSound = 0.5;
 /// Parts of the rows that are summed up by themselves: the same for any number of threads.
 constexpr std::size_t kParts = 4;
 
-double hitsOf(const CutRows::Hits& hits) { return double(hits[0]) + double(hits[1]); }
-
 /// Sums of the rows, by place.
 std::vector<double> rowSums(const CutParts& parts) {
   const std::vector<double> ones(parts.area.size(), 1.0);
@@ -32,8 +30,8 @@ std::vector<double> rowSums(const CutParts& parts) {
   parallelFor(parts.blocks.size(), 1, [&](std::size_t b) {
     for (std::size_t r = 0; r < parts.blocks[b].ends.size(); ++r) {
       const std::size_t place = b * CutParts::kBlock + r;
-      sums[place] =
-          parts.of_a_hit[place] * sumOfCut<1>(parts.blocks[b], r, fields.data(), 1, hitsOf)[0];
+      sums[place] = parts.of_a_hit[place] *
+                    sumOfCut<1>(parts.blocks[b], r, fields.data(), 1, CutRows::both)[0];
     }
   });
   return sums;
@@ -49,7 +47,7 @@ void scatter(const CutParts& parts, std::size_t first, std::size_t last,
       const double each = parts.tree.patches()[place].area * parts.of_a_hit[place];
       for (std::size_t e = rows.begin(r); e < rows.ends[r]; ++e) {
         NodeField& node = nodes[rows.nodes[e]];
-        const double share = each * hitsOf(rows.hits[e]);
+        const double share = each * CutRows::both(rows.hits[e]);
         node.mean += share;
         for (std::size_t k = 0; k < kPatchFeatures; ++k) {
           node.slope[k] += share * rows.places[e][k] * CutRows::stepOf(k);
@@ -85,9 +83,7 @@ class DownSweep {
     }
     const PatchTree::Fit& fit = tree_.fit(node);
     const double area = before_[of.end] - before_[of.begin];
-    std::array<double, kPatchFeatures> along{};
-    std::ranges::copy(nodes_[node].slope, along.begin());
-    along = fit.solve(along);
+    const std::array<double, kPatchFeatures> along = fit.solve(nodes_[node].slope);
     from.value += nodes_[node].mean / area;
     for (std::size_t k = 0; k < kPatchFeatures; ++k) {
       if (fit.unitOf(k) > 0) from.slope[k] += along[k] / fit.unitOf(k) / area;
@@ -140,7 +136,8 @@ double powerOfAHit(const CutParts& parts) {
     for (std::size_t r = 0; r < rows.ends.size(); ++r) {
       const std::size_t place = b * CutParts::kBlock + r;
       double of_row = 0;
-      for (std::size_t e = rows.begin(r); e < rows.ends[r]; ++e) of_row += hitsOf(rows.hits[e]);
+      for (std::size_t e = rows.begin(r); e < rows.ends[r]; ++e)
+        of_row += CutRows::both(rows.hits[e]);
       hits += of_row;
       power += of_row * parts.of_a_hit[place] * parts.tree.patches()[place].area;
     }
@@ -159,10 +156,13 @@ void flatten(CutParts& parts, std::size_t place) {
 /// Scales rows to their sums.
 void scaleRows(CutParts& parts, std::span<const double> sums) {
   std::vector<double> found = rowSums(parts);
+  bool flattened = false;
   for (std::size_t k = 0; k < found.size(); ++k) {
-    if (found[k] < kSound * sums[k]) flatten(parts, k);
+    if (found[k] >= kSound * sums[k]) continue;
+    flatten(parts, k);
+    flattened = true;
   }
-  found = rowSums(parts);
+  if (flattened) found = rowSums(parts);
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (found[k] > 0) parts.of_a_hit[k] *= sums[k] / found[k];
   }

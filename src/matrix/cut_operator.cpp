@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "matrix/bands_at_once.h"
 
 namespace radiosity {
 namespace {
 
-double allHits(const CutRows::Hits& hits) { return double(hits[0]) + double(hits[1]); }
 double hitsApart(const CutRows::Hits& hits) { return double(hits[0]) - double(hits[1]); }
 
 std::array<double, kPatchFeatures> placeOf(const CutRows& rows, std::size_t entry) {
@@ -96,7 +96,7 @@ void CutOperator::multiply(std::span<const double> x, int bands, std::span<doubl
       const std::size_t place = b * CutParts::kBlock + r;
       const std::size_t i = parts_.tree.patches()[place].patch;
       if (!isWanted(i)) continue;
-      sumRow(parts_.blocks[b], r, fields.data(), bands, allHits, sums.data());
+      sumRow(parts_.blocks[b], r, fields.data(), bands, CutRows::both, sums.data());
       for (std::size_t k = 0; k < width; ++k) y[i * width + k] += parts_.of_a_hit[place] * sums[k];
     }
   });
@@ -113,7 +113,7 @@ std::vector<double> CutOperator::row(std::size_t i) const {
   for (std::size_t e = rows.begin(row); e < rows.ends[row]; ++e) {
     const PatchTree::Node& node = parts_.tree.nodes()[rows.nodes[e]];
     const auto below = patches.subspan(node.begin, node.end - node.begin);
-    const double share = parts_.of_a_hit[place] * allHits(rows.hits[e]);
+    const double share = parts_.of_a_hit[place] * CutRows::both(rows.hits[e]);
     if (node.isLeaf()) {
       values[below.front().patch] += below.front().counts * share;
       continue;
@@ -151,7 +151,7 @@ std::vector<double> CutOperator::rowNorms() const {
           const std::array<double, kPatchFeatures> f = placeOf(rows, e);
           along = inner(f, parts_.tree.fit(rows.nodes[e]).solve(f));
         }
-        sum += allHits(rows.hits[e]) *
+        sum += CutRows::both(rows.hits[e]) *
                std::sqrt(squares[rows.nodes[e]].mean * (1 + std::max(0.0, along)));
       }
       norms[parts_.tree.patches()[place].patch] += parts_.of_a_hit[place] * sum;
@@ -160,7 +160,7 @@ std::vector<double> CutOperator::rowNorms() const {
   return norms;
 }
 
-// Half the hitsApart of two independent estimates is, in the mean square, the error of their mean.
+// Half the difference of two independent estimates is, in the mean square, the error of their mean.
 std::optional<double> CutOperator::relativeError(std::span<const double> x, int bands) const {
   const auto width = std::size_t(bands);
   std::vector<double> y(size() * width);

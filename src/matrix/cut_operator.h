@@ -34,6 +34,7 @@ struct CutRows {
     return ends.size() * sizeof(std::uint32_t) +
            nodes.size() * (sizeof(Index) + sizeof(Hits) + sizeof(Place));
   }
+  static double both(const Hits& of) { return double(of[0]) + double(of[1]); }
   /// The step of a feature: f is within 1 for places, and within 2 for normals.
   static constexpr double stepOf(std::size_t feature) { return (feature < 3 ? 1.0 : 2.0) / 127; }
 };

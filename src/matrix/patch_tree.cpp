@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "matrix/bands_at_once.h"
+
 namespace radiosity {
 namespace {
 
@@ -134,10 +136,7 @@ class UpSweep {
         const double unit = fit.unitOf(k) * area;
         mean[k] = unit > 0 ? moments.with_f[b][k] / unit : 0.0;
       }
-      const std::array<double, kPatchFeatures> slope = fit.solve(mean);
-      NodeField& field = fields_[node * stride_ + b];
-      field.mean = moments.sum[b] / area;
-      field.slope = slope;
+      fields_[node * stride_ + b] = {moments.sum[b] / area, fit.solve(mean)};
     }
     return moments;
   }

@@ -1,7 +1,6 @@
 // Patches in a binary tree by place and normal, and the linear fit of a field to these over a node.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -102,29 +101,6 @@ struct NodeField {
   double mean = 0;
   std::array<double, kPatchFeatures> slope{};
 };
-
-/// Calls some.template operator()<n>(b) for bands b to b + n - 1, all in turn, as many at once as
-/// fit into registers.
-template <class Some>
-void forBandsAtOnce(int bands, const Some& some) {
-  constexpr int kAtOnce = 4;
-  for (int b = 0; b < bands; b += kAtOnce) {
-    switch (std::min(bands - b, kAtOnce)) {
-      case 1:
-        some.template operator()<1>(b);
-        break;
-      case 2:
-        some.template operator()<2>(b);
-        break;
-      case 3:
-        some.template operator()<3>(b);
-        break;
-      default:
-        some.template operator()<kAtOnce>(b);
-        break;
-    }
-  }
-}
 
 /// The fields of all bands over all nodes: bands values a node. `x`: N * bands, by patch.
 std::vector<NodeField> nodeFields(const PatchTree& tree, std::span<const double> x, int bands);

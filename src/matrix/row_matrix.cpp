@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "base/scratch_rows.h"
+#include "matrix/bands_at_once.h"
 #include "matrix/expected_bytes.h"
 
 namespace radiosity {
@@ -35,9 +36,6 @@ constexpr std::size_t kCountedRows = 64;
 
 /// The rows that a thread takes at a time: enough work to hide the scheduling of sparse rows.
 constexpr std::size_t kProductGrain = 16;
-
-/// The bands summed in one walk along a row; further bands take another walk, from the cache.
-constexpr int kBandsAWalk = 4;
 
 /// Values of one stored row. `columns` is null for a dense row.
 template <class Value>
@@ -73,23 +71,8 @@ void dot(const StoredValues<Value>& row, const double* x, std::size_t stride, do
 
 template <class Value>
 void dotAllBands(const StoredValues<Value>& row, const double* x, int bands, double* out) {
-  const auto stride = std::size_t(bands);
-  for (int b = 0; b < bands; b += kBandsAWalk) {
-    switch (std::min(bands - b, kBandsAWalk)) {
-      case 1:
-        dot<1>(row, x + b, stride, out + b);
-        break;
-      case 2:
-        dot<2>(row, x + b, stride, out + b);
-        break;
-      case 3:
-        dot<3>(row, x + b, stride, out + b);
-        break;
-      default:
-        dot<4>(row, x + b, stride, out + b);
-        break;
-    }
-  }
+  forBandsAtOnce(bands,
+                 [&]<int kBands>(int b) { dot<kBands>(row, x + b, std::size_t(bands), out + b); });
 }
 
 /// out[b] = sum over the row of F_ij x[j * bands + b].

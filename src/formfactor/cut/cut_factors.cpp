@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "base/figure_text.h"
@@ -96,7 +93,7 @@ Cut::Cost Cut::foresee(Progress& progress) {
   const std::size_t n = scene_->size();
   Cost cost;
   cost.plan.seconds = plan_.seconds * double(n) / double(allowedThreads());
-  cost.plan.tolerance = std::hypot(plan_.noise, plan_.bias);
+  cost.plan.tolerance = plan_.error();
   cost.plan.refining = 1;
   cost.plan.refining_order = 2 / kUsualOrder;
   cost.plan.matrix_bytes = std::size_t(double(n) * plan_.entries * kEntryBytes) + n * kTreeBytes;
@@ -124,17 +121,16 @@ double setAccount(const CutCounts& counts, double known_share, bool closed, std:
 }
 
 void noteShort(const CutPlan& plan, double tolerance, FormFactorReport& report) {
-  const double error = std::hypot(plan.noise, plan.bias);
   if (!plan.is_lit) {
     report.notes.push_back({Severity::info,
                             "rows that were tried see next to nothing that light falls on: the "
                             "error of irradiance is not known"});
-  } else if (error > tolerance) {
+  } else if (plan.error() > tolerance) {
     report.notes.push_back(
         {Severity::warning,
          fmt::format("irradiance is right to about {:.2g}, not to {:.2g}: rows stopped at {} rays; "
                      "{} or {} comes closer",
-                     error, tolerance, countText(std::size_t(kReplicates) * plan.rays),
+                     plan.error(), tolerance, countText(std::size_t(kReplicates) * plan.rays),
                      spelled("method", "exact"), spelled("method", "rays"))});
   }
 }

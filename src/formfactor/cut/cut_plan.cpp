@@ -273,9 +273,7 @@ class Trials {
       CutRows rows;
       cutter.cut(sample.place, sample.row, rows);
       entries[k] = rows.nodes.size();
-      const OfTrials cut = sumOfCut<kTrials>(
-          rows, 0, fields_.data(), kTrials,
-          [](const CutRows::Hits& hits) { return double(hits[0]) + double(hits[1]); });
+      const OfTrials cut = sumOfCut<kTrials>(rows, 0, fields_.data(), kTrials, CutRows::both);
       for (std::size_t t = 0; t < kTrials; ++t) {
         const double each = sample.row.counted() > 0 ? 1 / sample.row.counted() : 0.0;
         sample.off[t] = each * cut[t] - sample.whole[t];

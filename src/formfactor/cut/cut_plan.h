@@ -2,6 +2,7 @@
 // tried on some rows, under lights of the scene's own.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "formfactor/rays/ray_scene.h"
@@ -16,6 +17,7 @@ struct CutPlan {
   /// cutting their rows.
   double noise = 0;
   double bias = 0;
+  double error() const { return std::hypot(noise, bias); }
   double entries = 0;   ///< of a row
   double seconds = 0;   ///< a row, of one thread by the clock
   bool is_lit = false;  ///< whether rows have seen anything that the trial lights shine on
