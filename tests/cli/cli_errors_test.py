@@ -13,7 +13,7 @@ import unittest
 
 import h5py
 
-from cli_runner import DATA, PROGRAM, SMALL, CliTest
+from cli_runner import DATA, PROGRAM, SMALL, CliTest, limit
 
 # Minutes of work, so that a signal always finds it running.
 LONG = ["--patches", "20000", "--method", "hemicube", "--resolution", "2048"]
@@ -302,7 +302,7 @@ class TimeLimit(CliTest):
 class Interrupted(CliTest):
     def interrupt(self, process, number):
         process.send_signal(number)
-        return process.communicate(timeout=120)
+        return process.communicate(timeout=limit(120))
 
     def start(self, *outputs):
         process = subprocess.Popen(
@@ -328,7 +328,7 @@ class Interrupted(CliTest):
         rows = self.folder / "p.h5.rows"
         for number in [signal.SIGINT, signal.SIGTERM]:
             process = self.start("-o", "p.png", "-o", "p.h5")
-            deadline = time.monotonic() + 120
+            deadline = time.monotonic() + limit(120)
             while not rows.exists() or rows.stat().st_size < 8192:  # more than the header: a row
                 self.assertLess(time.monotonic(), deadline)
                 time.sleep(0.01)
@@ -358,7 +358,7 @@ class Interrupted(CliTest):
             stderr=follower, env={**os.environ, "TERM": "xterm"})
         os.close(follower)
         text = b""
-        deadline = time.monotonic() + 120
+        deadline = time.monotonic() + limit(120)
         while b"% " not in text or b" left" not in text:
             ready, _, _ = select.select([leader], [], [], 1)
             if ready:
@@ -366,7 +366,7 @@ class Interrupted(CliTest):
             self.assertIsNone(process.poll(), text)
             self.assertLess(time.monotonic(), deadline, text)
         process.send_signal(signal.SIGINT)
-        process.wait(timeout=120)
+        process.wait(timeout=limit(120))
         os.close(leader)
         self.assertIn(b"\r", text)
         self.assertEqual(process.returncode, 1)

@@ -14,6 +14,15 @@ DATA = Path(os.environ["RADIOSITY_SOURCE_DIR"]) / "data"
 # Built with node and npm: `view` can write pages.
 HAS_PAGES = os.environ["RADIOSITY_PAGES"] == "1"
 
+# How many times longer a run may take than that of a release build: under a sanitizer.
+PATIENCE = int(os.environ.get("RADIOSITY_PATIENCE", "1"))
+
+
+def limit(seconds):
+    """What a run that takes `seconds` of a release build at most may take of this one."""
+    return PATIENCE * seconds
+
+
 # Small enough for a run to take a fraction of a second.
 # Hemicubes as they see: the same as gathering at patches, whatever emits.
 SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32", "--emitters", "estimated"]
@@ -76,7 +85,7 @@ class CliTest(unittest.TestCase):
     def run_program(self, *arguments, code=0):
         process = subprocess.run(
             [PROGRAM, *map(str, arguments)],
-            cwd=self.folder, capture_output=True, text=True, timeout=300, check=False)
+            cwd=self.folder, capture_output=True, text=True, timeout=limit(300), check=False)
         self.assertEqual(
             process.returncode, code,
             f"radiosity {' '.join(map(str, arguments))}\n{process.stdout}\n{process.stderr}")

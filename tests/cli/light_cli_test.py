@@ -12,7 +12,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from cli_runner import DATA, PROGRAM, SMALL, CliTest
+from cli_runner import DATA, PROGRAM, SMALL, CliTest, limit
 
 FLOOR = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\no floor\nf 4 3 2 1\n"
 
@@ -120,7 +120,7 @@ class KeptStages(CliTest):
             line = process.stdout.readline()
             self.assertTrue(line, "the run ended before it was interrupted")
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=120)
+        _, err = process.communicate(timeout=limit(120))
         self.assertEqual(process.returncode, 1, err)
         return err.splitlines()[-1]
 

@@ -8,7 +8,7 @@ import numpy
 from scipy.io import mmread
 
 import mesh_files
-from cli_runner import DATA, PROGRAM, CliTest
+from cli_runner import DATA, PROGRAM, CliTest, limit
 
 FORMATS = {
     "a.vs3": [mesh_files.to_view3d],
@@ -85,7 +85,7 @@ class BrokenMeshes(CliTest):
 
     def exit_code(self, *arguments):
         """A run that ends by itself: with a summary, or with one line."""
-        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, timeout=60,
+        run = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, timeout=limit(60),
                              check=False)
         if run.returncode != 0:
             self.assertEqual(run.stderr.count(b"\n"), 1, run.stderr)

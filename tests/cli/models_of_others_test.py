@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from cli_runner import PROGRAM, CliTest
+from cli_runner import PROGRAM, CliTest, limit
 
 MODELS = Path("/usr/share/assimp/models")
 READ = {".obj", ".gltf", ".glb", ".stl", ".ply", ".off", ".dae", ".fbx", ".3ds", ".ifc", ".3mf", ".dxf"}
@@ -30,7 +30,7 @@ class ModelsOfOthersTest(CliTest):
         for model in models:
             with self.subTest(model.relative_to(MODELS)):
                 run = subprocess.run([PROGRAM, "info", model], capture_output=True, text=True,
-                                     timeout=60, check=False)
+                                     timeout=limit(60), check=False)
                 if run.returncode == 0:
                     read += 1
                     continue

@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from cli_runner import DATA, PROGRAM, CliTest
+from cli_runner import DATA, PROGRAM, CliTest, limit
 
 BOX = str(DATA / "cornell-box-closed.obj")
 ROOMS = str(DATA / "two-rooms.obj")
@@ -60,7 +60,7 @@ def peak_bytes(process):
 @unittest.skipUnless(BUILT, "built without MPI (RADIOSITY_MPI)")
 class MpiTest(CliTest):
     def mpirun(self, processes, *arguments, petsc="", code=0):
-        done = subprocess.run(launch(processes, *arguments), cwd=self.folder, timeout=300, text=True,
+        done = subprocess.run(launch(processes, *arguments), cwd=self.folder, timeout=limit(300), text=True,
                               capture_output=True, env={**ENVIRONMENT, "PETSC_OPTIONS": petsc})
         self.assertEqual(done.returncode, code, done.stderr)
         return done
@@ -222,7 +222,7 @@ class MpiTest(CliTest):
     def test_a_file_that_a_process_cannot_write_is_reported_once(self):
         command = launch(3, "factors", BOX, "--patches", "2000", "--method", "exact", "-o", "f.h5")
         limited = ["bash", "-c", "ulimit -f 9000; " + shlex.join(command)]  # of 24 MB
-        done = subprocess.run(limited, cwd=self.folder, timeout=300, text=True, capture_output=True,
+        done = subprocess.run(limited, cwd=self.folder, timeout=limit(300), text=True, capture_output=True,
                               env=ENVIRONMENT)
         self.assertNotEqual(done.returncode, 0)
         lines = [line for line in done.stderr.splitlines() if line.startswith("radiosity: ")]
@@ -243,7 +243,7 @@ class MpiTest(CliTest):
     def test_a_killed_process_ends_all_and_is_named(self):
         run = self.run_at_work()
         os.kill(processes_of(run.pid)[1], signal.SIGKILL)
-        out, err = run.communicate(timeout=60)
+        out, err = run.communicate(timeout=limit(60))
         self.assertNotEqual(run.returncode, 0)
         self.assertRegex(out + err, r"rank 1 .*signal 9")
         self.assertFalse((self.folder / "f.h5").exists())
@@ -289,11 +289,11 @@ class MpiTest(CliTest):
         run = self.run_at_work()
         processes = processes_of(run.pid)
         run.send_signal(signal.SIGINT)
-        run.communicate(timeout=60)
+        run.communicate(timeout=limit(60))
         self.assertNotEqual(run.returncode, 0)
         # The launcher kills and does not wait: a killed process gives back its memory for some
         # milliseconds yet, more on a busy machine.
-        until = time.monotonic() + 10
+        until = time.monotonic() + limit(10)
         while any(map(is_running, processes)) and time.monotonic() < until:
             time.sleep(0.01)
         self.assertFalse([p for p in processes if is_running(p)])

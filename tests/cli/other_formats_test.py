@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 from PIL import Image
 
-from cli_runner import PROGRAM, CliTest
+from cli_runner import PROGRAM, CliTest, limit
 
 # A face of one metre above the plane x, y; what follows a number is a group code's value.
 DXF = "\n".join(["0", "SECTION", "2", "ENTITIES", "0", "3DFACE", "8", "roof"] +
@@ -314,7 +314,7 @@ class AssimpProcessTest(CliTest):
             helper.chmod(0o755)
         (self.folder / "a.dae").write_text(COLLADA)
         return subprocess.run([folder / "radiosity", "info", "a.dae"], cwd=self.folder, capture_output=True,
-                              env={**os.environ, "LD_LIBRARY_PATH": ""}, text=True, timeout=60)
+                              env={**os.environ, "LD_LIBRARY_PATH": ""}, text=True, timeout=limit(60))
 
     def assert_says(self, run, code, line):
         self.assertEqual((run.returncode, run.stdout, run.stderr), (code, "", f"radiosity: {line}\n"))

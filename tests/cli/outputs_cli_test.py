@@ -12,7 +12,7 @@ import unittest
 
 import h5py
 
-from cli_runner import DATA, PROGRAM, SMALL, CliTest
+from cli_runner import DATA, PROGRAM, SMALL, CliTest, limit
 
 # Every subcommand that writes, and what it writes.
 WRITES = [("mesh", "box.obj", "m.obj"), ("mesh", "box.obj", "m.h5"), ("factors", "box.obj", "f.mtx"),
@@ -93,7 +93,7 @@ class Names(CliTest):
 class StandardOutput(CliTest):
     def run_to(self, out, *arguments, **more):
         return subprocess.run([PROGRAM, *arguments], cwd=self.folder, stdout=out, stderr=subprocess.PIPE,
-                              text=True, timeout=300, check=False, **more)
+                              text=True, timeout=limit(300), check=False, **more)
 
     def test_lost_lines_are_a_failure(self):
         for arguments in (["info", "box.obj"], ["--help"], ["solve", "--help"], ["--version"],
@@ -132,7 +132,7 @@ class Killed(CliTest):
             before = self.files()
             run = subprocess.Popen([PROGRAM, "factors", "box.obj", *slow, "-o", name, "--no-resume"],
                                    cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            until = time.monotonic() + 60
+            until = time.monotonic() + limit(60)
             while self.files() == before and time.monotonic() < until:
                 time.sleep(0.02)
             left = sorted(set(self.files()) - set(before))
@@ -161,7 +161,7 @@ class Memory(CliTest):
         for megabytes in range(100, 1000, 50):
             limit = megabytes << 20
             run = subprocess.run([PROGRAM, "factors", "box.obj", "--patches", "60", "--method", "rays"],
-                                 cwd=self.folder, capture_output=True, text=True, timeout=300, check=False,
+                                 cwd=self.folder, capture_output=True, text=True, timeout=limit(300), check=False,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
             self.assertNotIn("processor", run.stderr)
             if run.returncode == 1:

@@ -12,7 +12,7 @@ import unittest
 
 import h5py
 
-from cli_runner import DATA, PROGRAM, CliTest
+from cli_runner import DATA, PROGRAM, CliTest, limit
 
 SCENE = str(DATA / "cluttered.obj")
 # Each takes two or three seconds of one core.
@@ -175,7 +175,7 @@ class ResumeTest(CliTest):
         process = self.run_until(LONG, 20_000)
         self.assertIsNotNone(process)
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=limit(60))
         self.assertEqual(process.returncode, 1)
         self.assertEqual(err.splitlines()[-1],
                          "radiosity: interrupted; f.h5.rows keeps the rows; the same command goes "

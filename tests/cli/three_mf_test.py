@@ -9,7 +9,7 @@ import sys
 import unittest
 import zipfile
 
-from cli_runner import PROGRAM, CliTest
+from cli_runner import PROGRAM, CliTest, limit
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 RELATIONS = """<?xml version="1.0" encoding="UTF-8"?>
@@ -249,7 +249,8 @@ class ThreeMf(CliTest):
             for _ in range(chance.randint(1, 3)):
                 broken[chance.randrange(len(broken))] = chance.randrange(256)
             self.put(bytes(broken[:chance.choice([len(broken), chance.randrange(1, len(broken))])]))
-            run = subprocess.run([PROGRAM, "info", "a.3mf"], cwd=self.folder, capture_output=True, text=True, timeout=60,
+            run = subprocess.run([PROGRAM, "info", "a.3mf"], cwd=self.folder, capture_output=True,
+                                 text=True, timeout=limit(60),
                                  check=False)
             self.assertIn(run.returncode, (0, 2), run.stderr)
             if run.returncode == 2:

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 import scipy.sparse
 
-from cli_runner import DATA, HAS_PAGES, PROGRAM, CliTest
+from cli_runner import DATA, HAS_PAGES, PROGRAM, CliTest, limit
 
 BOX = ["--patches", "60"]
 TYPES = {"f32": np.float32, "u32": np.uint32, "u16": np.uint16, "u8": np.uint8}
@@ -191,7 +191,7 @@ class Desktop(CliTest):
         ours, theirs = pty.openpty()
         try:
             subprocess.run([PROGRAM, "view", "box.obj", *BOX, "--elements", "off", "--quiet", *arguments],
-                           cwd=self.folder, env=self.environment | environment, timeout=60,
+                           cwd=self.folder, env=self.environment | environment, timeout=limit(60),
                            check=True, stdout=theirs if terminal else subprocess.DEVNULL)
         finally:
             os.close(ours)

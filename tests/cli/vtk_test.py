@@ -14,7 +14,7 @@ from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 import mesh_files
-from cli_runner import PROGRAM, CliTest
+from cli_runner import PROGRAM, CliTest, limit
 
 MESH = mesh_files.Mesh([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], {"plate": [[0, 1, 2], [0, 2, 3]]})
 POINTS = "POINTS 6 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 2 0 1 2 0\n"
@@ -192,7 +192,8 @@ class Vtk(CliTest):
 
     def attempt(self, content):
         self.put(content, "a.vtp")
-        return subprocess.run([PROGRAM, "info", "a.vtp"], cwd=self.folder, capture_output=True, text=True, timeout=60,
+        return subprocess.run([PROGRAM, "info", "a.vtp"], cwd=self.folder, capture_output=True, text=True,
+                              timeout=limit(60),
                               check=False)
 
     def test_broken_legacy_files_are_refused_by_line(self):
