@@ -1,7 +1,10 @@
 // Lights without a surface. A kind is a struct: its traits, its parameters as a list, and what it
-// gives to a place; what all others ask of lights, they ask of Light.
+// sends to a place; what all others ask of lights, they ask of Light.
 #pragma once
 
+#include <limits>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -12,63 +15,239 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-/// A place that lights shine on.
-struct LitPlace {
-  Vec3 position{0.0};  ///< metres
-  Vec3 normal{0.0};
-  /// The share of what leaves the place that meets nothing. 0 where rays ask each light for the
-  /// radiance that they bring (Light::radiance()).
-  double open = 0;
+/// The axis that points up.
+enum class Up { y, z };
+
+/// Lumens a watt: of light whose Y is that of the bands, linear Rec. 709 (CIE 1931, photopic).
+inline constexpr double kLumensPerWatt = 683;
+
+/// The way by which a light reaches a place, unless something stands in it.
+struct LightRay {
+  static constexpr double kOutside = std::numeric_limits<double>::infinity();
+  Vec3 toward{0.0};            ///< unit, from the place to the light
+  double distance = kOutside;  ///< metres; kOutside: the light is beyond the scene
+  double share = 0;            ///< irradiance across the way, over the light's strength
 };
 
 /// What a kind of light is called.
 struct LightTraits {
-  const char* word;      ///< of the command line, Python and files; the name of the light
-  const char* strength;  ///< the quantity that scales it
-  const char* unit;      ///< of the strength
-  const char* from;      ///< where it comes from, in a few words
-  const char* help;      ///< a sentence
+  const char* word;         ///< of the command line, Python and files
+  const char* strength;     ///< the quantity that scales it
+  const char* unit;         ///< of the strength
+  const char* photometric;  ///< its unit in photometry; 683 of them are one `unit`
+  const char* from;         ///< where it comes from, in a few words
+  const char* help;         ///< a sentence
+  bool single = false;      ///< a scene has one at most: the word is its name
+  double usual = 0;         ///< strength by default; 0: it must be given
 };
 
 /// The same radiance from every direction in which nothing stands.
 struct UniformSky {
   static constexpr LightTraits kTraits{
-      "sky", "radiance", "W/m^2/sr", "from where nothing stands",
-      "Light an open scene from every direction in which nothing stands, also from below: "
-      "radiance, W/m^2/sr; one number or R,G,B (default 0). Pictures show it, opaque, where "
-      "nothing is hit"};
+      .word = "sky",
+      .strength = "radiance",
+      .unit = "W/m^2/sr",
+      .photometric = "cd/m^2",
+      .from = "from where nothing stands",
+      .help =
+          "Light an open scene from every direction in which nothing stands, also from below: "
+          "radiance, W/m^2/sr; one number or R,G,B (default 0). Pictures show it, opaque, "
+          "where nothing is hit",
+      .single = true};
   static void describe(auto& /*list*/, auto& /*sky*/) {}
 
-  /// pi L times the open share: Lambert's law over a uniform part of the hemisphere.
-  double irradiance(double radiance, const LitPlace& place) const;
   double radiance(double radiance) const { return radiance; }
 
   bool operator==(const UniformSky&) const = default;
 };
 
+/// A point that sends the same intensity everywhere.
+struct PointLight {
+  static constexpr LightTraits kTraits{.word = "point",
+                                       .strength = "intensity",
+                                       .unit = "W/sr",
+                                       .photometric = "cd",
+                                       .from = "from a point",
+                                       .help = "A point that shines alike in all directions"};
+  Vec3 at{0.0};      ///< metres
+  double range = 0;  ///< metres, where it ends, by the window of KHR_lights_punctual; 0: nowhere
+
+  static void describe(auto& list, auto& light) {
+    list({.name = "at", .value = "X,Y,Z", .unit = "m", .help = "Its place"}, light.at);
+    list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"},
+         light.range, {.from = 0});
+  }
+
+  LightRay ray(const Vec3& place, double u, double v) const;
+  /// Of a triangle that faces the point with nothing in between: the mean of its irradiance over
+  /// the strength. The solid angle (van Oosterom & Strackee 1983, eq. 8) over the area; none with
+  /// a range.
+  std::optional<double> share(const Vec3& a, const Vec3& b, const Vec3& c) const;
+  /// Over the strength; without the end that `range` makes.
+  double power() const { return 4 * std::numbers::pi; }
+
+  bool operator==(const PointLight&) const = default;
+};
+
+/// A point that sends a cone of light: the whole intensity up to `inner` degrees off its axis,
+/// nothing beyond `outer`, in between the square of a ramp in the cosine (glTF 2.0,
+/// KHR_lights_punctual).
+struct SpotLight {
+  static constexpr LightTraits kTraits{.word = "spot",
+                                       .strength = "intensity",
+                                       .unit = "W/sr",
+                                       .photometric = "cd",
+                                       .from = "from a point",
+                                       .help = "A point that shines into a cone"};
+  Vec3 at{0.0};              ///< metres
+  Vec3 aim{0.0, -1.0, 0.0};  ///< metres: a point on its axis, other than `at`
+  double inner = 0;          ///< degrees
+  double outer = 45;         ///< degrees
+  double range = 0;          ///< as of PointLight
+
+  static void describe(auto& list, auto& light) {
+    list({.name = "at", .value = "X,Y,Z", .unit = "m", .help = "Its place"}, light.at);
+    list({.name = "aim", .value = "X,Y,Z", .unit = "m", .help = "A place that it points at"},
+         light.aim);
+    list({.name = "inner",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "Up to here off its axis it shines whole"},
+         light.inner, {.from = 0, .to = 180});
+    list({.name = "outer",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "From here on it does not shine"},
+         light.outer, {.to = 180, .above = 0});
+    list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"},
+         light.range, {.from = 0});
+  }
+
+  LightRay ray(const Vec3& place, double u, double v) const;
+  double power() const;
+  /// Throws InputError unless it has an axis, and an inner cone within the outer.
+  void validate() const;
+
+  bool operator==(const SpotLight&) const = default;
+};
+
+/// A disc at infinity, in the direction `toward`. Angles, or a place and a time on Earth, replace
+/// the direction (settle()).
+struct Sun {
+  static constexpr LightTraits kTraits{
+      .word = "sun",
+      .strength = "irradiance",
+      .unit = "W/m^2",
+      .photometric = "lx",
+      .from = "from far away",
+      .help =
+          "Light from far away, with shadows: irradiance of what faces it, W/m^2 (or "
+          "100000lx), one number or R,G,B (default 1000), then where it stands: "
+          "elevation=DEGREES,azimuth=DEGREES (clockwise from north: +y where z is up, -z where "
+          "y is), or toward=X,Y,Z; or LATITUDE,LONGITUDE,TIME, e.g. "
+          "52.5,13.4,2026-06-21T12:00+02:00",
+      .single = true,
+      .usual = 1000};
+  Vec3 toward{0.0};                 ///< from the scene to it, of any length; 0: it gives no light
+  double diameter = 0.533;          ///< degrees; 0: sharp shadows
+  std::optional<double> elevation;  ///< degrees above the horizon (45 if nothing else is given)
+  std::optional<double> azimuth;    ///< degrees clockwise from north, seen from above (180)
+  double north = 0;                 ///< degrees by which north is turned clockwise
+  double latitude = 0;              ///< degrees north
+  double longitude = 0;             ///< degrees east
+  std::string time;                 ///< "2026-06-21T12:00+02:00", or Z for UTC; empty: none
+
+  /// What values are without a name of their own, if one of them is no number.
+  static constexpr const char* kUnnamed[] = {"latitude", "longitude", "time"};
+  static void describe(auto& list, auto& sun) {
+    list({.name = "toward", .value = "X,Y,Z", .help = "The direction in which it stands"},
+         sun.toward);
+    list({.name = "diameter", .value = "DEGREES", .unit = "degrees", .help = "Of its disc"},
+         sun.diameter, {.from = 0, .to = 90});
+    list({.name = "elevation", .value = "DEGREES", .unit = "degrees", .help = "Above the horizon"},
+         sun.elevation, {.from = -90, .to = 90});
+    list({.name = "azimuth", .value = "DEGREES", .unit = "degrees", .help = "Clockwise from north"},
+         sun.azimuth, {.from = -360, .to = 360});
+    list({.name = "north",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "North, clockwise from +y where z is up, from -z where y is"},
+         sun.north, {.from = -360, .to = 360});
+    list({.name = "latitude", .value = "DEGREES", .unit = "degrees", .help = "Of the scene"},
+         sun.latitude, {.from = -90, .to = 90});
+    list({.name = "longitude", .value = "DEGREES", .unit = "degrees", .help = "Of the scene"},
+         sun.longitude, {.from = -180, .to = 180});
+    list({.name = "time", .value = "DATE", .help = "2026-06-21T12:00+02:00, or Z"}, sun.time);
+  }
+
+  /// u and v choose a point of the disc, alike by area.
+  bool isWide() const { return diameter > 0; }
+  LightRay ray(const Vec3& place, double u, double v) const;
+  /// The mean of the cosine over the disc; none where the triangle's plane cuts the disc.
+  std::optional<double> share(const Vec3& a, const Vec3& b, const Vec3& c) const;
+  /// Takes its direction from the angles, or from place and time, which are none then. Errors:
+  /// InputError if it is below the horizon, for a time that is none, and for a year that is not
+  /// 1950 to 2050.
+  void settle(Up up);
+
+  bool operator==(const Sun&) const = default;
+};
+
+/// Where the sun is seen, with the air's refraction.
+struct SolarPosition {
+  double elevation = 0;  ///< degrees
+  double azimuth = 0;    ///< degrees clockwise from north
+};
+
+/// J. Michalsky, "The Astronomical Almanac's algorithm for approximate solar position (1950-2050)",
+/// Solar Energy 40, 1988: to .01 degrees. `time` as Sun::time. Errors: InputError.
+SolarPosition solarPosition(double latitude, double longitude, const std::string& time);
+
 /// The kinds. Each has
 ///   kTraits
-///   describe(list, kind)          its parameters beside the strength, a line each (option_line.h)
-///   irradiance(strength, place)   W/m^2
-///   radiance(strength)            if it comes from where nothing stands: W/m^2/sr
+///   describe(list, kind)     its parameters beside the strength, a line each (option_line.h)
 ///   operator==
-using LightKind = std::variant<UniformSky>;
+/// and one of
+///   radiance(strength)       W/m^2/sr: it comes from where nothing stands
+///   ray(place, u, v)         it is aimed: the way from a place; u, v in [0, 1)
+/// Any may have kUnnamed and validate(); an aimed one isWide() (u and v matter), share(a, b, c),
+/// power() and settle(up).
+using LightKind = std::variant<UniformSky, PointLight, SpotLight, Sun>;
 
 struct Light {
   std::string name;
   LightKind kind;
   std::vector<double> strength;  ///< a value for each band, in the unit of traits(); >= 0
 
+  bool operator==(const Light&) const = default;
   const LightTraits& traits() const;
-  /// ",NAME=VALUE" of each parameter.
+  /// ",NAME=VALUE" of each parameter that is not as by default, and of the name if it is not the
+  /// kind's word.
   std::string parametersText() const;
+  std::vector<std::string> parameterNames() const;
   bool shines() const;  ///< in some band
   /// Whether it comes from where nothing stands: rays that meet nothing bring its radiance().
   bool isAllRound() const;
-  /// W/m^2, of one band.
-  double irradiance(std::size_t band, const LitPlace& place) const;
-  /// W/m^2/sr, of one band; 0 of lights that are not all round.
+  /// W/m^2/sr, of one band; 0 of aimed lights.
   double radiance(std::size_t band) const;
+  /// W/m^2, of one band, of a place of whose view the share `open` meets nothing: pi L times that,
+  /// Lambert's law over a uniform part of the hemisphere. 0 of aimed lights.
+  double fromAround(std::size_t band, double open) const;
+  /// Of aimed lights; of no share of others.
+  LightRay ray(const Vec3& place, double u, double v) const;
+  bool isWide() const;  ///< there are several ways to a place
+  /// The mean over a triangle that faces it, nothing in between, of irradiance over the strength;
+  /// none: there is no closed form.
+  std::optional<double> share(const Vec3& a, const Vec3& b, const Vec3& c) const;
+  /// W, of one band; none: it has no end.
+  std::optional<double> power(std::size_t band) const;
+  std::optional<Vec3> place() const;  ///< none: it has none in the scene
+  /// Whether it comes from beyond the scene.
+  bool isFromOutside() const;
+  /// What depends on the scene that it stands in; readers and applyOverrides() do it.
+  void settle(Up up);
+  /// Its option, as its face spells it: --sky, --light point.
+  std::string option() const;
   /// Throws InputError unless strengths are finite and >= 0, and parameters in range.
   void validate() const;
 };
@@ -80,15 +259,24 @@ Light uniformSky(std::vector<double> radiance);
 std::vector<Light> lightKinds();
 
 /// The light of a kind as the command line has it: its strength, one number or one a band, then
-/// NAME=VALUE of its parameters, with commas: "1,2,3,elevation=45". Errors: InputError.
+/// NAME=VALUE of its parameters, with commas: "1,2,3,elevation=45", "intensity=800cd,at=1,2,2.5,
+/// name=desk". The unit is that of the traits, the photometric one, or W or lm of a light that has
+/// a power. Errors: InputError.
 Light lightOf(const std::string& word, const std::string& text, int bands = 3);
+/// The same, the kind's word before the rest: "point,800cd,at=1,2,2.5".
+Light lightOf(const std::string& text);
 
 bool anyShines(std::span<const Light> lights);
+/// Whether one that shines comes from beyond the scene.
+bool anyShinesIn(std::span<const Light> lights);
 /// The radiance of what is seen where nothing stands, a band each; empty: of no light.
 std::vector<double> background(std::span<const Light> lights, int bands);
 /// Those that shine and are not all round: rays do not find them.
 std::vector<Light> aimedLights(std::span<const Light> lights);
 /// Replaces the light of that name, if there is one.
 void setLight(std::vector<Light>& lights, Light light);
+/// The same for a light that was not given a name: one of its own, "point 2", if its kind may be
+/// there more than once.
+void addLight(std::vector<Light>& lights, Light light);
 
 }  // namespace radiosity

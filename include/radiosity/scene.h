@@ -64,9 +64,6 @@ struct Camera {
   double aspect = 0.0;        ///< width / height; 0: the picture's own
 };
 
-/// The axis that points up. Only the defaults of cameras depend on it.
-enum class Up { y, z };
-
 /// Structure of arrays. F faces are polygons of 3 or more corners (concave ones allowed),
 /// counter-clockwise seen from the front.
 struct Scene {
@@ -88,7 +85,7 @@ struct Scene {
   std::vector<Camera> cameras;
   /// Those without a surface, of other names each; strengths are red, green and blue.
   std::vector<Light> lights{uniformSky({0, 0, 0})};
-  Up up = Up::y;
+  Up up = Up::y;           ///< the defaults of cameras and the places of the sun depend on it
   std::string unit = "m";  ///< the file's unit before conversion: mm, cm, m, in, ft
   std::vector<Note> notes;
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/parse.h"
+#include "radiosity/base.h"
 #include "radiosity/option_line.h"
 
 namespace radiosity {
@@ -35,6 +36,8 @@ std::string optionText(const OptionLine& line, const T& value) {
     return value ? optionText(line, *value) : line.unset;
   } else if constexpr (std::is_same_v<T, std::vector<double>>) {
     return value.empty() ? line.unset : fmt::format("{}", fmt::join(value, ","));
+  } else if constexpr (std::is_same_v<T, Vec3>) {
+    return fmt::format("{},{},{}", value.x, value.y, value.z);
   } else if constexpr (kIsRepeated<T>) {
     return fmt::format("{}", fmt::join(value, ","));
   } else {
@@ -66,6 +69,11 @@ bool readOption(const OptionLine& line, std::string_view text, T& value) {
       if (!number) return false;
       value.push_back(*number);
     }
+    return true;
+  } else if constexpr (std::is_same_v<T, Vec3>) {
+    std::vector<double> numbers;
+    if (!readOption(line, text, numbers) || numbers.size() != 3) return false;
+    value = {numbers[0], numbers[1], numbers[2]};
     return true;
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = text;

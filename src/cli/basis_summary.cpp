@@ -27,7 +27,7 @@ void summarizeBasis(Report& report, const LightBasis& basis, Detail detail) {
     }
     rows.push_back({basis.names[set], numberText(emitted)});
   }
-  report.table("sources", {{"name", "set", false}, {"emitted_W", "emitted and from the sky, W"}},
+  report.table("sources", {{"name", "set", false}, {"emitted_W", "gives, W"}},
                rows);
 }
 

@@ -51,7 +51,7 @@ void noteLightOptions(Session& session, bool materials_are_used) {
     if (!scene.materials_file.empty()) unused.emplace_back("--materials");
   }
   for (const Light& light : scene.lights) {
-    unused.push_back("--" + light.name + " (heat has --sky-temperature)");
+    unused.push_back(light.option() + " (heat has --sky-temperature)");
   }
   for (const std::string& name : session.request.given.allOf<SceneOptions>()) {
     if (name != "--unit" && !materials_are_used) unused.push_back(name);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace radiosity::cli {
 
 namespace {
@@ -49,7 +51,11 @@ std::string darknessText(const Request& request, const Scene& scene, int bands) 
         "of {}",
         request.input);
   }
-  const char* why = anyShines(scene.lights)
+  const auto isLamp = [](const Light& light) { return light.shines() && light.place(); };
+  const char* why = std::ranges::any_of(scene.lights, isLamp)
+                        ? "no light reaches a front: lamps stand inside of bodies, behind surfaces "
+                          "or too far away"
+                    : anyShinesIn(scene.lights)
                         ? "nothing emits light and no patch sees the sky (the scene is closed)"
                         : "nothing emits light";
   return fmt::format("{}, so B = 0 everywhere; {}", why, lightCure(request, scene));

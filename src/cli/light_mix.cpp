@@ -30,7 +30,7 @@ std::vector<LightWeight> parseMix(const std::string& text) {
 std::string overrideOf(const SceneOptions& scene) {
   if (!scene.set.empty()) return "--set";
   if (!scene.materials_file.empty()) return "--materials";
-  return scene.lights.empty() ? "" : "--" + scene.lights.front().name;
+  return scene.lights.empty() ? "" : scene.lights.front().option();
 }
 
 [[noreturn]] void failWithoutBasis(const Request& request) {

@@ -40,7 +40,7 @@ void refuseSceneOptions(const Request& request) {
   for (const auto& [name, given] : of_scenes) {
     if (given) refuse(name);
   }
-  if (!request.scene.lights.empty()) refuse("--" + request.scene.lights.front().name);
+  if (!request.scene.lights.empty()) refuse(request.scene.lights.front().option());
   for (const std::string& given :
        {request.given.firstOf<SceneOverrides>(), request.given.firstOf<SceneOptions>(),
         request.given.firstOf({"patches", "max-edge", "method", "tolerance", "closure"})}) {

@@ -13,19 +13,47 @@ namespace radiosity::cli {
 
 namespace {
 
-/// `kind`: a light as it is by default.
+/// The option of a kind of which a scene has one.
 void addLightOption(CLI::App& app, Request& r, const Light& kind) {
   const std::string name = "--" + kind.name;
   const auto take = [&r, name, word = kind.name](const std::string& text) {
     const Light light = lightOf(word, text);
     nameOption(name, [&] { light.validate(); });
-    setLight(r.scene.lights, light);
+    addLight(r.scene.lights, light);
   };
   std::string value = kind.traits().strength;
   std::ranges::transform(value, value.begin(), [](unsigned char c) { return std::toupper(c); });
   app.add_option_function<std::string>(name, take, kind.traits().help)
       ->group("Scene")
-      ->option_text(value + kind.parametersText());
+      ->option_text(value);
+}
+
+/// The option of all kinds.
+void addLightsOption(CLI::App& app, Request& r) {
+  std::string kinds;
+  for (const Light& kind : lightKinds()) {
+    const LightTraits& traits = kind.traits();
+    kinds += fmt::format("{}{} ({}, {} or {}", kinds.empty() ? "" : "; ", traits.word,
+                         traits.strength, traits.unit, traits.photometric);
+    for (const std::string& parameter : kind.parameterNames()) kinds += ", " + parameter;
+    kinds += ")";
+  }
+  const auto take = [&r](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      const Light light = lightOf(text);
+      nameOption("--light", [&] { light.validate(); });
+      addLight(r.scene.lights, light);
+    }
+  };
+  app.add_option_function<std::vector<std::string>>(
+         "--light", take,
+         "A light without a surface, e.g. point,800cd,at=1,2,2.5,name=desk, or a power, 900lm; it "
+         "replaces the scene's of its name. May be repeated. Kinds, with the strength, which may "
+         "be one number or R,G,B, and what else they take: " +
+             kinds)
+      ->group("Scene")
+      ->option_text("KIND,STRENGTH,...")
+      ->allow_extra_args(false);
 }
 
 }  // namespace
@@ -33,7 +61,10 @@ void addLightOption(CLI::App& app, Request& r, const Light& kind) {
 void addSceneOptions(CLI::App& app, Request& r) {
   addOptionsOf<SceneOptions>(app, r, "Scene");
   addOptionsOf<SceneOverrides>(app, r, "Scene");
-  for (const Light& kind : lightKinds()) addLightOption(app, r, kind);
+  for (const Light& kind : lightKinds()) {
+    if (kind.traits().single) addLightOption(app, r, kind);
+  }
+  addLightsOption(app, r);
 }
 
 void addMeshOptions(CLI::App& app, Request& r) {

@@ -202,7 +202,7 @@ double sum(const std::vector<double>& bands) {
   return std::accumulate(bands.begin(), bands.end(), 0.0);
 }
 
-/// Incoming power: emitted, and from the sky.
+/// Incoming power: emitted, and from lights without a surface.
 double incoming(const EnergyAccount& e) { return sum(e.emitted) + sum(e.from_sky); }
 
 /// A part as a share of the incoming power, which is easier to judge than watts.
@@ -213,7 +213,7 @@ std::string shareOf(const std::vector<double>& part, const EnergyAccount& e) {
 void energyFigures(Report& report, const EnergyAccount& e) {
   report.bands("emitted_W", fmt::format("emitted ({})", bandsText(int(e.emitted.size()))),
                e.emitted, "W");
-  report.bands("from_sky_W", "from the sky", e.from_sky, "W");
+  report.bands("from_sky_W", "from the sky and lamps", e.from_sky, "W");
   report.bands("absorbed_W", "absorbed", e.absorbed, shareOf(e.absorbed, e));
   report.bands("to_sky_W", "left to the sky", e.to_sky, shareOf(e.to_sky, e));
   report.bands("on_backs_W", "lost on backs", e.on_backs, shareOf(e.on_backs, e));

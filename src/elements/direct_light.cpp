@@ -104,7 +104,7 @@ EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& material
       elements_(elements),
       occluders_(occluders),
       emitters_(emitters),
-      lights_(aimedLights(materials.lights)),
+      aimed_(mesh, rays, materials.lights),
       rays_(rays),
       tree_(bodiesOf(occluders)),
       kernels_(visibilityKernels(true)),
@@ -131,8 +131,14 @@ EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& material
 
 std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& shape,
                                                             const ElementLights* parent) const {
-  if (occluders_ == nullptr) return nullptr;
+  const bool any_aimed = !aimed_.lights().empty();
+  if (occluders_ == nullptr && !any_aimed) return nullptr;
   auto lights = std::make_shared<Lights>();
+  if (occluders_ == nullptr) {
+    lights->kind = ElementLights::Kind::partial;
+    lights->settled = true;
+    return lights;
+  }
   if (parent != nullptr) {
     thinOut(shape, static_cast<const Lights&>(*parent), *lights);
     lights->judge();
@@ -142,8 +148,10 @@ std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& 
     lights->kind = ElementLights::Kind::by_rays;
     lights->settled = true;
   }
-  const bool dark = lights->kind == ElementLights::Kind::dark;
-  if (dark && !lights_.empty()) lights->kind = ElementLights::Kind::plain;
+  // What stands between the element and aimed lights, points tell.
+  if (any_aimed && lights->kind != ElementLights::Kind::by_rays) {
+    lights->kind = ElementLights::Kind::partial;
+  }
   return lights;
 }
 
@@ -243,14 +251,16 @@ void EmitterLight::thinOut(const ElementShape& shape, const Lights& from, Lights
 
 double EmitterLight::irradiance(const SurfacePoint& point, const ElementLights* lights,
                                 std::span<double> out) const {
-  for (const Light& light : lights_) {
-    for (std::size_t b = 0; b < out.size(); ++b) {
-      out[b] += light.irradiance(b, {point.position, point.normal});
-    }
-  }
+  const double noise =
+      aimed_.lights().empty()
+          ? 0.0
+          : aimed_.add({point.inner, point.normal, surface_.owners[point.owners]}, out);
+  if (emitters_.empty()) return noise;
   const auto* of = static_cast<const Lights*>(lights);
-  if (of == nullptr || of->kind == ElementLights::Kind::by_rays) return aimed(point, of, out);
-  return clipped(point, *of, out);
+  if (of == nullptr || of->kind == ElementLights::Kind::by_rays) {
+    return noise + byRays(point, of, out);
+  }
+  return noise + clipped(point, *of, out);
 }
 
 /// Whether an occluder lies on one of several facets that meet smoothly in a point.
@@ -385,8 +395,8 @@ double EmitterLight::addSeen(const Unblocked& light, const Looks& looks,
 }
 
 /// Most points see all looks arrive or none; those in a penumbra take more.
-double EmitterLight::aimed(const SurfacePoint& point, const Lights* lights,
-                           std::span<double> out) const {
+double EmitterLight::byRays(const SurfacePoint& point, const Lights* lights,
+                            std::span<double> out) const {
   ++by_rays_;
   thread_local Unblocked light;
   thread_local Looks looks;

@@ -8,6 +8,7 @@
 
 #include "elements/emitters.h"
 #include "elements/field_builder.h"
+#include "formfactor/rays/aimed_light.h"
 #include "formfactor/rays/point_rays.h"
 #include "radiosity/elements.h"
 #include "visibility/clipping/clip_kernels.h"
@@ -66,14 +67,14 @@ class EmitterLight : public FieldLight {
   void look(const SurfacePoint& point, const Unblocked& light, std::size_t count,
             Looks& looks) const;
   double addSeen(const Unblocked& light, const Looks& looks, std::span<double> out) const;
-  double aimed(const SurfacePoint& point, const Lights* lights, std::span<double> out) const;
+  double byRays(const SurfacePoint& point, const Lights* lights, std::span<double> out) const;
 
   const PatchMaterials& materials_;
   const ElementSurface& surface_;
   const ElementSet& elements_;
   const OccluderSet* occluders_;
   const std::vector<Emitter>& emitters_;
-  std::vector<Light> lights_;  ///< without a surface
+  AimedLight aimed_;
   const PointRays& rays_;
   OccluderTree tree_;
   VisibilityKernels kernels_;

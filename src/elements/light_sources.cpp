@@ -192,7 +192,8 @@ void LightSources::findDirect(bool keep_lights) {
     return;
   }
   const bool clip = emitters_.size() <= kMostClippedEmitters;
-  if (clip) occluders_ = std::make_unique<OccluderSet>(mesh_, elements_, progress_);
+  if (clip && !emitters_.empty())
+    occluders_ = std::make_unique<OccluderSet>(mesh_, elements_, progress_);
   emitter_light_ = std::make_unique<EmitterLight>(mesh_, materials_, surface_, elements_,
                                                   occluders_.get(), emitters_, rays_);
   RefinementRule how = rule(options_.tolerance, options_.smallest_edge);

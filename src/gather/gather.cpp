@@ -322,7 +322,7 @@ Gathered gather(const PatchMesh& mesh, const PatchMaterials& materials,
   const Stopwatch watch;
   options.validate();
   checkMaterials(mesh, materials);
-  const GatherScene scene(mesh, materials, options);
+  const GatherScene scene(mesh, materials, options, progress);
   std::unique_ptr<GpuEye> eye;
   if (scene.isLit()) {
     eye = openGpuEye(options.eye, scene.rows.scene(), mesh, scene.rows.weights());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/steady_mean.h"
+#include "formfactor/light_on_patches.h"
 
 namespace radiosity {
 namespace {
@@ -24,7 +25,7 @@ std::size_t bytesOf(const std::vector<Value>& values) {
 }  // namespace
 
 GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_patches,
-                         const GatherOptions& options)
+                         const GatherOptions& options, Progress& progress)
     : mesh(patch_mesh),
       bands(std::size_t(of_patches.bands)),
       at(options.at),
@@ -37,24 +38,25 @@ GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_p
   } else {
     standAtVertices(of_patches, options);
   }
-  findSources();
+  findSources(progress);
 }
 
-void GatherScene::findSources() {
+void GatherScene::findSources(Progress& progress) {
+  std::vector<LightOnPatches::Place> places;
+  for (const Eye& eye : eyes) places.push_back({eye.position, eye.normal, eye.own});
+  aimed = LightOnPatches(mesh).aimedAt(lights, places, int(bands), progress);
   source = materials.emission;
   largest_source.assign(bands, 0.0);
   for (std::size_t k = 0; k < source.size(); ++k) {
-    const double aimed = byLights(k / bands, k % bands, 0);
-    source[k] = float(double(source[k]) + double(materials.reflectance[k]) * aimed);
+    source[k] = float(double(source[k]) + double(materials.reflectance[k]) * aimed[k]);
     double& largest = largest_source[k % bands];
     largest = std::max({largest, double(materials.emission[k]), byLights(k / bands, k % bands, 1)});
   }
 }
 
 double GatherScene::byLights(std::size_t eye, std::size_t band, double open) const {
-  const LitPlace place{eyes[eye].position, eyes[eye].normal, open};
-  double irradiance = 0;
-  for (const Light& light : lights) irradiance += light.irradiance(band, place);
+  double irradiance = aimed[eye * bands + band];
+  for (const Light& light : lights) irradiance += light.fromAround(band, open);
   return irradiance;
 }
 

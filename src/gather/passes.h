@@ -24,7 +24,8 @@ struct EyeMaterials {
 class GatherScene {
  public:
   /// `mesh` is kept by reference.
-  GatherScene(const PatchMesh& mesh, const PatchMaterials& materials, const GatherOptions& options);
+  GatherScene(const PatchMesh& mesh, const PatchMaterials& materials, const GatherOptions& options,
+              Progress& progress);
   GatherScene(const GatherScene&) = delete;
   GatherScene& operator=(const GatherScene&) = delete;
 
@@ -43,6 +44,7 @@ class GatherScene {
   std::optional<PatchBasis> basis;   ///< at vertices
   EyeMaterials materials;
   std::vector<Light> lights;  ///< without a surface
+  std::vector<double> aimed;  ///< L * bands: irradiance by those that are aimed
   /// L * bands: emission, and what eyes reflect of aimed lights.
   std::vector<float> source;
   /// By band, the largest emission, or irradiance by lights under an open sky if that is more.
@@ -57,7 +59,7 @@ class GatherScene {
  private:
   void standAtPatches(const PatchMaterials& of_patches, const GatherOptions& options);
   void standAtVertices(const PatchMaterials& of_patches, const GatherOptions& options);
-  void findSources();
+  void findSources(Progress& progress);
 };
 
 /// gather() in a scene with these options. `eye`: null for the CPU's.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/figure_text.h"
+#include "formfactor/light_on_patches.h"
 #include "mesh/clusters/cluster_means.h"
 #include "page/container.h"
 #include "page/eyes.h"
@@ -15,7 +16,6 @@
 #include "page/surfaces.h"
 #include "radiosity/spelling.h"
 #include "results/glb.h"
-#include "visibility/lights/light_on_patches.h"
 
 namespace radiosity {
 
@@ -49,12 +49,14 @@ void addPatches(const PatchMesh& mesh, const PatchColours& colours, const Vec3& 
 /// Lights without a surface: irradiance of unknowns by each, and what comes from where nothing
 /// stands.
 void addLights(const PatchMaterials& materials, const PatchMesh& mesh, const FormFactors& factors,
-               Container& container) {
+               Progress& progress, Container& container) {
   const int bands = materials.bands;
   Container::Json lights = Container::Json::array();
+  LightOnPatches on_patches(mesh);
   for (const Light& light : materials.lights) {
     if (!light.shines()) continue;
-    std::vector<double> irradiance = lightOnPatches({&light, 1}, mesh, factors.sky, bands);
+    std::vector<double> irradiance =
+        on_patches.all({&light, 1}, factors.sky, bands, progress).irradiance;
     if (mesh.clusters) irradiance = clusterMeans(mesh, irradiance, bands);
     container.add("light_" + std::to_string(lights.size()), floats(rgbOf(irradiance, bands)));
     lights.push_back({{"name", light.name},
@@ -108,7 +110,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   addSurfaces(mesh, options.crease, origin, container);
   addEyes(mesh, options.crease, origin, container);
   addPatches(mesh, colours, origin, container);
-  addLights(pipeline.materials(), mesh, factors, container);
+  addLights(pipeline.materials(), mesh, factors, progress, container);
   addFactors(factors, matrix, codes, container);
   addSeenPatches(mesh, progress, container);
   report.element_triangles = addElements(mesh, light, options.crease, origin, container);

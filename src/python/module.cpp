@@ -76,13 +76,18 @@ void save(const std::string& path, const FactorsHandle& factors, const SolutionH
   });
 }
 
-/// The kinds of lights as options.
+/// The kinds of lights of which a scene has one as options.
 py::list describedLights() {
   py::list all;
   for (const Light& light : lightKinds()) {
+    if (!light.traits().single) continue;
     py::dict option;
     option["name"] = light.name;
-    option["value"] = 0.0;
+    if (light.traits().usual > 0) {
+      option["value"] = "";
+    } else {
+      option["value"] = 0.0;
+    }
     option["help"] = light.traits().help;
     all.append(option);
   }

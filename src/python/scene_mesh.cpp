@@ -21,7 +21,7 @@ std::shared_ptr<Scene> load(const std::string& path, const py::dict& given) {
   SceneOverrides::describe(take, options);
   std::vector<LightText> lights;
   take("lights", lights);
-  for (const auto& [word, text] : lights) setLight(options.lights, lightOf(word, text));
+  for (const auto& [word, text] : lights) addLight(options.lights, lightOf(word, text));
   auto scene = std::make_shared<Scene>();
   runWithoutSteps([scene, path, options] { *scene = loadScene(path, options); });
   return scene;
@@ -51,7 +51,11 @@ std::shared_ptr<Scene> sceneOfArrays(const Array<double>& vertices, const Array<
     scene->surfaces.push_back({name, Index(scene->materials.size()), name});
     scene->materials.push_back(material);
   }
-  for (const auto& [word, text] : lights) setLight(scene->lights, lightOf(word, text));
+  for (const auto& [word, text] : lights) {
+    Light light = lightOf(word, text);
+    light.settle(scene->up);
+    addLight(scene->lights, std::move(light));
+  }
   {
     const py::gil_scoped_release unlocked;
     validate(*scene);

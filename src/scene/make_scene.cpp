@@ -59,6 +59,10 @@ class Validation {
               fmt::format("{} has {} values of {}, it takes 3", light.name, light.strength.size(),
                           light.traits().strength));
       light.validate();
+      Light settled = light;
+      settled.settle(scene_.up);
+      require(settled == light,
+              fmt::format("{} has angles, or no direction: settle() gives it one", light.name));
     }
   }
 

@@ -10,11 +10,13 @@
 #include <utility>
 
 #include "base/input_file.h"
+#include "base/name_pattern.h"
 #include "base/parse.h"
 #include "radiosity/spelling.h"
 #include "scene/checks/checks.h"
 #include "scene/face_edits.h"
 #include "scene/json_scan.h"
+#include "scene/lights/light_text.h"
 #include "scene/scene_builder.h"
 #include "scene/surface_names.h"
 #include "scene/text.h"
@@ -47,7 +49,12 @@ class Overrides {
   void setSides(const std::string& name, bool two_sided, const Origin& origin);
   /// The surfaces that `name` stands for.
   std::vector<Index> surfacesOf(const std::string& name, const Origin& origin) const;
-  void replace(const Light& light);
+  void replace(Light light, Up up);
+  bool isLight(const std::string& name) const { return lightNamed(name) != scene_.lights.end(); }
+  void setLightProperty(const std::string& name, const std::string& property,
+                        const std::string& value, const Origin& origin);
+  /// Whether there was one that `name` or a pattern stands for.
+  bool leaveOutLights(const std::string& name);
   void readMaterialsFile(const std::string& path);
   void noteRounding() { rounded_.appendTo(scene_.notes); }
 
@@ -57,6 +64,9 @@ class Overrides {
     static const std::vector<Index> kNothing;
     const auto place = index.find(name);
     return place == index.end() ? kNothing : place->second;
+  }
+  std::vector<Light>::iterator lightNamed(const std::string& name) const {
+    return std::ranges::find(scene_.lights, name, &Light::name);
   }
   Index ownMaterial(Index surface, std::span<const Index> chosen);
   void note(std::string text) { scene_.notes.push_back({Severity::info, std::move(text)}); }
@@ -216,14 +226,45 @@ std::string Overrides::setEmission(Material& material, const Vec3& value, const 
          dropTexture(material.emission_texture, "");
 }
 
-void Overrides::replace(const Light& light) {
+void Overrides::replace(Light light, Up up) {
+  light.settle(up);
+  light.validate();
   const auto before = std::ranges::find(scene_.lights, light.name, &Light::name);
   const bool had_one = before != scene_.lights.end();
   const LightTraits& traits = light.traits();
-  note(fmt::format("{}: {} {} -> {} {} {}", light.name, traits.strength,
+  Light nameless = light;
+  nameless.name = traits.word;
+  note(fmt::format("{}: {} {} -> {} {} {}{}", light.name, traits.strength,
                    describeBands(had_one ? coloursOf(*before) : Vec3(0.0)),
-                   describeBands(coloursOf(light)), traits.unit, traits.from));
-  setLight(scene_.lights, light);
+                   describeBands(coloursOf(light)), traits.unit, traits.from,
+                   nameless.parametersText()));
+  setLight(scene_.lights, std::move(light));
+}
+
+/// The light anew from its text, with one parameter changed.
+void Overrides::setLightProperty(const std::string& name, const std::string& property,
+                                 const std::string& value, const Origin& origin) {
+  const Light& light = *lightNamed(name);
+  const std::string text = fmt::format("{}{},{}={}", strengthText(light.strength),
+                                       light.parametersText(), property, value);
+  try {
+    replace(lightOf(light.traits().word, text), scene_.up);
+  } catch (const InputError& error) {
+    origin.fail(error.what());
+  }
+}
+
+bool Overrides::leaveOutLights(const std::string& name) {
+  std::vector<std::string> gone;
+  for (const Light& light : scene_.lights) {
+    const bool shown = light.name == name || (isPattern(name) && matchesPattern(name, light.name));
+    if (shown && !light.isAllRound()) gone.push_back(light.name);
+  }
+  std::erase_if(scene_.lights, [&](const Light& light) {
+    return std::ranges::find(gone, light.name) != gone.end();
+  });
+  if (!gone.empty()) note(fmt::format("left out: {}", joinNames(gone)));
+  return !gone.empty();
 }
 
 void Overrides::noteUnused(const std::string& name, Index material) {
@@ -306,14 +347,18 @@ void applySet(const std::string& text, Overrides& overrides) {
     origin.fail("is not NAME.PROPERTY=VALUE, for example lamp.emission=17,12,4");
   }
   const std::string_view value_text = trimmed(std::string_view(text).substr(equals + 1));
+  const std::string name = text.substr(0, dot);
+  const std::string property(trimmed(text.substr(dot + 1, equals - dot - 1)));
+  if (overrides.isLight(name)) {
+    overrides.setLightProperty(name, property, std::string(value_text), origin);
+    return;
+  }
   std::optional<Vec3> value = parseTriple(value_text);
   if (const std::optional<double> number = parseNumber(value_text)) value = Vec3(*number);
   if (!value) {
     origin.fail(fmt::format("`{}` is not one finite number or three with commas", value_text));
   }
-  overrides.setProperty(text.substr(0, dot),
-                        std::string(trimmed(text.substr(dot + 1, equals - dot - 1))), *value,
-                        origin);
+  overrides.setProperty(name, property, *value, origin);
 }
 
 /// Notes materials of reflectance 1, unless an equal note is there already.
@@ -337,8 +382,11 @@ void applyOverrides(Scene& scene, const SceneOverrides& given) {
   std::vector<Material> materials = scene.materials;
   std::vector<Surface> surfaces = scene.surfaces;
   std::vector<Note> notes = scene.notes;
+  std::vector<Light> lights = scene.lights;
+  const Up up = scene.up;
   try {
     Overrides overrides(scene);
+    if (given.up) scene.up = *given.up;
     if (!given.materials_file.empty()) overrides.readMaterialsFile(given.materials_file);
     for (const std::string& text : given.set) applySet(text, overrides);
     for (const std::string& name : given.one_sided) {
@@ -351,13 +399,16 @@ void applyOverrides(Scene& scene, const SceneOverrides& given) {
       edits.flip(name, overrides.surfacesOf(name, {spelled("flip", name)}));
     }
     for (const std::string& name : given.without) {
+      const bool any = overrides.leaveOutLights(name);
+      if (any && surfacesMeant(scene, name).empty()) continue;
       edits.leaveOut(name, overrides.surfacesOf(name, {spelled("without", name)}));
     }
     edits.requireFaces();
     overrides.noteRounding();
-    for (const Light& light : given.lights) overrides.replace(light);
-    if (given.up) scene.up = *given.up;
+    for (const Light& light : given.lights) overrides.replace(light, scene.up);
   } catch (...) {
+    scene.lights = std::move(lights);
+    scene.up = up;
     scene.materials = std::move(materials);
     scene.surfaces = std::move(surfaces);
     scene.notes = std::move(notes);

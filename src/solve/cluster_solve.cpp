@@ -4,7 +4,6 @@
 #include "solve/beyond_means.h"
 #include "solve/energy.h"
 #include "solve/solve_rows.h"
-#include "visibility/lights/light_on_patches.h"
 
 namespace radiosity {
 
@@ -20,12 +19,12 @@ ClusterSolve::ClusterSolve(const FormFactors& factors, const PatchMaterials& mat
                  {mesh.surface, mesh.surface_names});
   reflectance_ = clusterMeans(mesh, materials.reflectance, materials.bands);
   emission_ = clusterMeans(mesh, materials.emission, materials.bands);
-  const auto by = [&](std::span<const double> open) {
-    return lightOnPatches(materials.lights, mesh, open, materials.bands);
-  };
-  by_lights_ = clusterMeans(mesh, by(factors.sky), materials.bands);
-  aimed_ = by({});
-  aimed_means_ = clusterMeans(mesh, aimed_, materials.bands);
+  LightOnPatches lights(mesh);
+  by_lights_ = clusterMeans(mesh, lights.fromAround(materials.lights, factors.sky, materials.bands),
+                            materials.bands);
+  aimed_ = lights.aimed(materials.lights, materials.bands, progress);
+  aimed_means_ = clusterMeans(mesh, aimed_.irradiance, materials.bands);
+  for (std::size_t k = 0; k < by_lights_.size(); ++k) by_lights_[k] += aimed_means_[k];
   surface_ = clusterSurfaces(mesh);
 }
 
@@ -40,6 +39,7 @@ Solution ClusterSolve::run() const {
   Solution solution = between(more);
   if (raiseToDark(more, solution.irradiance)) solution = between(more);
   accountFor(more, solution.summary.energy);
+  noteErrorOf(aimed_, solution.summary);
   judgeBalance(factors_, emission_, solution.summary);
   solution.summary.seconds += means.summary.seconds;
   solution.irradiance = within(light, std::move(solution.irradiance));
@@ -57,7 +57,7 @@ std::vector<double> ClusterSolve::within(const PatchIrradiance& light,
                                          std::vector<double> irradiance) const {
   for (std::size_t k = 0; k < irradiance.size(); ++k) irradiance[k] -= aimed_means_[k];
   irradiance = light.around(irradiance);
-  for (std::size_t k = 0; k < irradiance.size(); ++k) irradiance[k] += aimed_[k];
+  for (std::size_t k = 0; k < irradiance.size(); ++k) irradiance[k] += aimed_.irradiance[k];
   return irradiance;
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "formfactor/light_on_patches.h"
 #include "formfactor/patch_irradiance.h"
 #include "radiosity/solve.h"
 
@@ -41,7 +42,7 @@ class ClusterSolve {
   std::vector<double> reflectance_;
   std::vector<double> emission_;
   std::vector<double> by_lights_;  ///< K * bands: irradiance by lights without a surface
-  std::vector<double> aimed_;      ///< N * bands: of these, by lights that rays do not bring
+  LightFall aimed_;                ///< on patches: of these, by lights that rays do not bring
   std::vector<double> aimed_means_;
   std::vector<Index> surface_;
 };

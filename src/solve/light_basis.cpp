@@ -125,7 +125,10 @@ std::vector<LightSource> lightSources(const PatchMaterials& materials, const Pat
   }
   for (const Light& light : materials.lights) {
     if (!light.shines()) continue;
-    sources.push_back({light.name, std::vector<double>(materials.emission.size()), {light}});
+    const bool taken = std::ranges::find(sources, light.name, &LightSource::name) != sources.end();
+    sources.push_back({taken ? light.name + " (light)" : light.name,
+                       std::vector<double>(materials.emission.size()),
+                       {light}});
   }
   return sources;
 }

@@ -15,7 +15,6 @@
 #include "solve/linear_solve.h"
 #include "solve/singular.h"
 #include "solve/solve_rows.h"
-#include "visibility/lights/light_on_patches.h"
 
 namespace radiosity {
 
@@ -58,7 +57,7 @@ std::vector<double> skyIrradiance(const FormFactors& factors, std::span<const do
   const Light sky = uniformSky({radiance.begin(), radiance.end()});
   sky.validate();
   for (std::size_t k = 0; k < irradiance.size(); ++k) {
-    irradiance[k] = sky.irradiance(k % width, {.open = std::max(0.0, factors.sky[k / width])});
+    irradiance[k] = sky.fromAround(k % width, std::max(0.0, factors.sky[k / width]));
   }
   return irradiance;
 }
@@ -187,6 +186,11 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
   return solution;
 }
 
+void noteErrorOf(const LightFall& by_lights, SolveSummary& summary) {
+  if (!summary.usable() || !(by_lights.error > 0)) return;
+  summary.message += fmt::format("; light of lamps off by about {:.2g}%", 100 * by_lights.error);
+}
+
 Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group,
@@ -201,10 +205,12 @@ Solution solve(const FormFactors& factors, const PatchMaterials& materials, cons
                const SolveOptions& options, Progress& progress) {
   materials.requireSizes(mesh.size());
   if (mesh.clusters) return ClusterSolve(factors, materials, mesh, options, progress).run();
+  const LightFall by_lights =
+      LightOnPatches(mesh).all(materials.lights, factors.sky, materials.bands, progress);
   Solution solution =
       solveRows(factors, materials.reflectance, materials.emission, materials.bands, options,
-                progress, {mesh.surface, mesh.surface_names},
-                lightOnPatches(materials.lights, mesh, factors.sky, materials.bands), {});
+                progress, {mesh.surface, mesh.surface_names}, by_lights.irradiance, {});
+  noteErrorOf(by_lights, solution.summary);
   judgeBalance(factors, materials.emission, solution.summary);
   return solution;
 }

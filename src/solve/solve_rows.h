@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "formfactor/light_on_patches.h"
 #include "radiosity/solve.h"
 
 namespace radiosity {
@@ -29,5 +30,8 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
                    std::span<const double> emission, int bands, const SolveOptions& options,
                    Progress& progress, const PatchNames& names, std::span<const double> by_lights,
                    std::span<const double> more);
+
+/// Says in the message how far what lights give may be off, where it may.
+void noteErrorOf(const LightFall& by_lights, SolveSummary& summary);
 
 }  // namespace radiosity

@@ -38,7 +38,7 @@ TRIALS = [
      r"rows that see the sky +[1-9]"),
     ("light", ["solve", "data/cornell-box.obj", "--patches", "60", "--beam", "1,elevation=0", "-o",
                 "beam.h5"],
-     r"from the sky +[0-9.]*[1-9]"),
+     r"from the sky and lamps +[0-9.]*[1-9]"),
     ("light", ["info", "beam.h5"], r"beam=1,elevation=0"),
     ("format", ["info", "one.tri"], r"(?i)1 face"),
     ("method", ["solve", "data/cornell-box.obj", "--patches", "60", "--method", "touching"],

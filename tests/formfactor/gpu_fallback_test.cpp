@@ -181,7 +181,7 @@ TEST(GpuFallback, TheProcessorGathersTheRestOfALostDevice) {
   options.passes = 4;
   Progress silent;
   const Gathered expected = gather(mesh, materials, options, silent);
-  const GatherScene scene(mesh, materials, options);
+  const GatherScene scene(mesh, materials, options, silent);
   for (const std::size_t lives : {0, 4}) {
     auto eye = std::make_unique<FailingEye>(scene.rows, lives);
     const Gathered seen = gatherIn(scene, std::move(eye), options, silent);
@@ -221,7 +221,7 @@ TEST(GpuFallback, TheProcessorGathersLightThatTheDeviceCannotHold) {
   options.passes = 2;
   Progress silent;
   const Gathered expected = gather(mesh, materials, options, silent);
-  const GatherScene scene(mesh, materials, options);
+  const GatherScene scene(mesh, materials, options, silent);
   auto eye =
       openGpuEye(EyeChoice::gl, scene.rows.scene(), mesh, scene.rows.weights(), FullEyes(false));
   const Gathered seen = gatherIn(scene, std::move(eye), options, silent);

@@ -308,18 +308,63 @@ TEST_F(SceneGltf, ReadsCamerasThroughTheirNodes) {
   EXPECT_NOTE(scene.notes, "orthographic cameras are not used: plan", Severity::warning);
 }
 
-TEST_F(SceneGltf, NamesLightsAndOtherScenes) {
-  Document d = triangle();
+/// The triangle with a node of each of these lights, moved and turned to shine along +x.
+Document withLights(Document d, const Json& lights) {
   d.json["extensionsUsed"] = {"KHR_lights_punctual"};
-  d.json["extensions"] = {
-      {"KHR_lights_punctual", {{"lights", {{{"type", "point"}, {"name", "Bulb"}}}}}}};
-  d.json["nodes"].push_back(
-      {{"name", "lightnode"}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  d.json["extensions"] = {{"KHR_lights_punctual", {{"lights", lights}}}};
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    d.json["scenes"][0]["nodes"].push_back(d.json["nodes"].size());
+    d.json["nodes"].push_back({{"name", "light" + std::to_string(k)},
+                               {"translation", {1, 2, double(k)}},
+                               {"rotation", {0, -std::sqrt(.5), 0, std::sqrt(.5)}},
+                               {"scale", {10, 10, 10}},
+                               {"extensions", {{"KHR_lights_punctual", {{"light", k}}}}}});
+  }
+  return d;
+}
+
+TEST_F(SceneGltf, ReadsLights) {
+  const Scene scene = load(withLights(
+      triangle(), {{{"type", "point"}, {"intensity", 683}, {"color", {1, .5, 0}}, {"range", 7}},
+                   {{"type", "spot"},
+                    {"intensity", 1366},
+                    {"spot", {{"innerConeAngle", 0}, {"outerConeAngle", std::numbers::pi / 6}}}},
+                   {{"type", "directional"}, {"intensity", 68300}}}));
+  ASSERT_EQ(scene.lights.size(), 4u);  // the sky
+  const Light& point = scene.lights[1];
+  EXPECT_EQ(point.name, "light0");
+  EXPECT_EQ(point.strength, (std::vector<double>{1, .5, 0}));
+  EXPECT_EQ(std::get<PointLight>(point.kind), (PointLight{{1, 2, 0}, 7}));
+  const Light& spot = scene.lights[2];
+  EXPECT_EQ(spot.strength, std::vector<double>(3, 2.0));
+  const auto& cone = std::get<SpotLight>(spot.kind);
+  EXPECT_EQ(cone.at, Vec3(1, 2, 1));
+  // A few roundings of unit vectors and of degrees.
+  EXPECT_NEAR(glm::distance(cone.aim, Vec3(2, 2, 1)), 0, 1e-14);
+  EXPECT_NEAR(cone.outer, 30, 1e-13);
+  const Light& sun = scene.lights[3];
+  EXPECT_EQ(sun.strength, std::vector<double>(3, 100.0));
+  EXPECT_NEAR(glm::distance(std::get<Sun>(sun.kind).toward, Vec3(-1, 0, 0)), 0, 1e-14);
+  EXPECT_NOTE(scene.notes, "taken at 683 lm/W: light0, light1, light2", Severity::info);
+}
+
+TEST_F(SceneGltf, RefusesLightsThatAreNone) {
+  EXPECT_CONTAINS(errorOf(withLights(triangle(), {{{"type", "point"}, {"intensity", -1}}})),
+                  "is not a finite value of 0 or more");
+  EXPECT_CONTAINS(errorOf(withLights(
+                      triangle(), {{{"type", "spot"},
+                                    {"spot", {{"innerConeAngle", 1.}, {"outerConeAngle", .5}}}}})),
+                  "give inner at most outer");
+  const Scene scene = load(withLights(triangle(), {{{"type", "area"}}}));
+  EXPECT_NOTE(scene.notes, "of a kind that is none, give no light: light0", Severity::warning);
+}
+
+TEST_F(SceneGltf, NamesOtherScenes) {
+  Document d = triangle();
   d.json["nodes"].push_back({{"name", "elsewhere"}, {"mesh", 0}});
-  d.json["scenes"] = {{{"nodes", {0, 1}}}, {{"nodes", {2}}}};
+  d.json["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
   const Scene scene = load(d);
   EXPECT_EQ(scene.faceCount(), 1u);
-  EXPECT_NOTE(scene.notes, "make them surfaces that emit: Bulb", Severity::warning);
   EXPECT_NOTE(scene.notes, "not part of the scene that is read, node: elsewhere",
               Severity::warning);
 }

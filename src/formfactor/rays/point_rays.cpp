@@ -36,7 +36,7 @@ struct SightContext {
   RTCIntersectContext context;  // first: Embree gives back a pointer to it
   const RayTargets* targets;
   std::span<const Index> own;
-  std::span<const Index> there;  ///< by the number that the ray has
+  std::span<const Index> there;  ///< by the number that the ray has; or none
 };
 
 /// An intersection filter: polygons that either end lies on stop nothing.
@@ -46,7 +46,9 @@ void passEnds(const RTCFilterFunctionNArguments* hits) {
     if (hits->valid[k] == 0) continue;
     const Index polygon = sight->targets->polygonOf(RTCHitN_primID(hits->hit, hits->N, k));
     const bool own = std::find(sight->own.begin(), sight->own.end(), polygon) != sight->own.end();
-    if (own || polygon == sight->there[RTCRayN_id(hits->ray, hits->N, k)]) hits->valid[k] = 0;
+    const bool end =
+        !sight->there.empty() && polygon == sight->there[RTCRayN_id(hits->ray, hits->N, k)];
+    if (own || end) hits->valid[k] = 0;
   }
 }
 
@@ -92,8 +94,8 @@ PointRays::PointRays(const PatchMesh& mesh)
       embree_(scene_, mesh),
       targets_(scene_, embree_, [](std::uint32_t item) { return item; }) {}
 
-glm::vec3 PointRays::lifted(const RaySource& from) const {
-  return embree_.place(from.position * scene_.scale) + kRayLift * glm::vec3(from.normal);
+glm::vec3 PointRays::lifted(const Vec3& from, const Vec3& normal) const {
+  return embree_.place(from * scene_.scale) + kRayLift * glm::vec3(normal);
 }
 
 RayEnd PointRays::endOf(const RTCRayHit16& packet, int k, std::span<const Index> own) const {
@@ -122,7 +124,7 @@ void PointRays::look(const RaySource& from, const HemisphereSet& set, std::size_
   const glm::vec3 x(c * frame.u + s * frame.v);
   const glm::vec3 y(c * frame.v - s * frame.u);
   const glm::vec3 z(frame.n);
-  const glm::vec3 start = lifted(from);
+  const glm::vec3 start = lifted(from.position, from.normal);
   RTCRayHit16 packet;
   for (std::size_t first = 0; first < set.rays(); first += kRayLanes) {
     initPacket(packet);
@@ -150,11 +152,11 @@ void PointRays::trace(const Vec3& from, std::span<const Vec3> along, std::span<R
   }
 }
 
-void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
-                    std::span<std::uint8_t> seen) const {
+template <class Start>
+void PointRays::seeFrom(const Start& startOf, std::span<const Index> own, std::span<const Vec3> to,
+                        std::span<const Index> there, std::span<std::uint8_t> seen) const {
   const FlushDenormals flush;
-  const glm::vec3 start = lifted(from);
-  SightContext sight{{}, &targets_, from.own, there};
+  SightContext sight{{}, &targets_, own, there};
   rtcInitIntersectContext(&sight.context);
   sight.context.filter = passEnds;
   sight.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -166,6 +168,7 @@ void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<c
     valid.fill(0);
     for (std::size_t k = 0; k < lanes; ++k) {
       valid[k] = -1;
+      const glm::vec3 start = startOf(first + k);
       const glm::vec3 along = embree_.place(to[first + k] * scene_.scale) - start;
       packet.org_x[k] = start.x;
       packet.org_y[k] = start.y;
@@ -180,6 +183,17 @@ void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<c
     rtcOccluded16(valid.data(), embree_.handle(), &sight.context, &packet);
     for (std::size_t k = 0; k < lanes; ++k) seen[first + k] = packet.tfar[k] < 0 ? 0 : 1;
   }
+}
+
+void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
+                    std::span<std::uint8_t> seen) const {
+  const glm::vec3 start = lifted(from.position, from.normal);
+  seeFrom([&](std::size_t /*ray*/) { return start; }, from.own, to, there, seen);
+}
+
+void PointRays::see(std::span<const Vec3> from, const Vec3& normal, std::span<const Index> own,
+                    std::span<const Vec3> to, std::span<std::uint8_t> seen) const {
+  seeFrom([&](std::size_t ray) { return lifted(from[ray], normal); }, own, to, {}, seen);
 }
 
 }  // namespace radiosity

@@ -79,9 +79,15 @@ class PointRays {
   /// the source's own polygons do not count.
   void see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
            std::span<std::uint8_t> seen) const;
+  /// The same between `from[k]`, points of one plane, and `to[k]`, in the open.
+  void see(std::span<const Vec3> from, const Vec3& normal, std::span<const Index> own,
+           std::span<const Vec3> to, std::span<std::uint8_t> seen) const;
 
  private:
-  glm::vec3 lifted(const RaySource& from) const;
+  glm::vec3 lifted(const Vec3& from, const Vec3& normal) const;
+  template <class Start>
+  void seeFrom(const Start& start, std::span<const Index> own, std::span<const Vec3> to,
+               std::span<const Index> there, std::span<std::uint8_t> seen) const;
   RayEnd endOf(const RTCRayHit16& packet, int k, std::span<const Index> own) const;
 
   ViewScene scene_;

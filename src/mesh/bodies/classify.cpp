@@ -191,7 +191,7 @@ void Classifier::noteLoneRoom() {
   std::set<std::string> names;
   for (const Sheet& sheet : sheets_) names.insert(scene_.surfaces[sheet.surface].name);
   report_.notes.push_back(
-      {anyShines(scene_.lights) ? Severity::warning : Severity::info,
+      {anyShinesIn(scene_.lights) ? Severity::warning : Severity::info,
        fmt::format("closed, two-sided and alone, so it is a room, and its outside has no patches "
                    "({} makes a body of it, if its faces are turned outward): {}",
                    spelled("one_sided", "all"),

@@ -166,11 +166,15 @@ class SpaceSearch {
            space.volume > 1.5 * area * space.coincidence;
   }
 
-  /// Boxes of the spaces that emit.
+  /// Boxes of the spaces that emit, and places of lamps.
   std::vector<Box3> lights() {
     std::vector<Box3> boxes;
     for (Index k = 0; k < spaces_.size(); ++k) {
       if (sets_.find(k) == k && spaces_[k].emits) boxes.push_back(spaces_[k].box);
+    }
+    for (const Light& light : scene_.lights) {
+      const std::optional<Vec3> place = light.place();
+      if (place && light.shines()) boxes.push_back({*place, *place});
     }
     return boxes;
   }

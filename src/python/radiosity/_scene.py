@@ -99,10 +99,44 @@ def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, A
     return made
 
 
-def _lights(given: Mapping[str, Any]) -> list:
+class Light(Fixed):
+    """A light without a surface, for load() and Scene().
+
+    kind: point, spot or sun. parameters: its strength by its name (intensity, W/sr; irradiance of what
+    faces a sun, W/m^2; one number, three, or a text with another unit, "800cd", "900lm"), what else
+    the kind takes (at, aim, outer, elevation, ...; radiosity info --help lists them), and `name`.
+
+    >>> rad.Light("point", intensity="800cd", at=(1, 2, 2.5), name="desk")
+    <Light point,intensity=800cd,at=1,2,2.5,name=desk>
+    """
+
+    def __init__(self, kind: str, **parameters: Any) -> None:
+        require("kind", kind, str, "the kind of a light, e.g. 'point'")
+        self._kind = kind
+        self._text = ",".join(f"{name}={_light_value(name, value)}" for name, value in parameters.items())
+
+    def __repr__(self) -> str:
+        return printable(f"<Light {self._kind},{self._text}>")
+
+
+def _light_value(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        return "".join(f"%{ord(c):02x}" if c in "%,;= \n\t" else c for c in value) if name == "name" else value
+    given = numbers(name, value, [(), (3,)], "one number, or three")
+    return ",".join(f"{float(x):g}" if float(f"{float(x):g}") == float(x) else repr(float(x))
+                    for x in given.reshape(-1))
+
+
+def _lights(given: Mapping[str, Any], more_lights: Any = ()) -> list:
     """Word and text of each light."""
-    return [(word, value if isinstance(value, str) else ",".join(map(repr, _colour(word, value))))
-            for word, value in given.items() if value is not None]
+    texts_of = [(word, value if isinstance(value, str) else ",".join(map(repr, _colour(word, value))))
+                for word, value in given.items() if value is not None and value != ""]
+    listed = [more_lights] if isinstance(more_lights, (str, Light)) else list(more_lights)
+    for light in listed:
+        require("lights", light, (str, Light), "rad.Light(...) or its text, 'point,800cd,at=1,2,2.5'")
+        word, _, rest = (f"{light._kind},{light._text}" if isinstance(light, Light) else light).partition(",")
+        texts_of.append((word, rest))
+    return texts_of
 
 
 class Scene(Fixed):
@@ -113,6 +147,7 @@ class Scene(Fixed):
     names or numbers; each group is a surface, by that name. materials: by group, a dict of
     `reflectance` (0 to 1; default 0.5), `emission` (radiant exitance, W/m^2; default 0), each one
     number or red, green and blue, and `two_sided`. sky: radiance where nothing stands, W/m^2/sr.
+    lights: those without a surface, rad.Light(...) each.
 
     The arrays are copied once. Errors: InputError naming the argument and the row.
 
@@ -129,13 +164,14 @@ class Scene(Fixed):
     @takes_options("lights")
     def __init__(self, vertices: Any, faces: Any, groups: Any = None,
                  materials: Optional[Mapping[Any, Mapping[str, Any]]] = None,
-                 sky: Any = 0.0, **lights: Any) -> None:
+                 sky: Any = 0.0, lights: Any = (), **others: Any) -> None:
         places = numbers("vertices", vertices, [(None, 3)])
         corners, offset, count = _corners(faces, len(places))
         surface, names = _group_of_faces(groups, count)
         self._handle = _core.scene_of_arrays(places, corners, offset, surface,
                                              _materials(names, materials),
-                                             _lights(dict(sky=sky, **more("lights", lights, "Scene"))))
+                                             _lights(dict(sky=sky, **more("lights", others, "Scene")),
+                                                     lights))
 
     @classmethod
     def _of(cls, handle: "_core.Scene") -> "Scene":
@@ -196,12 +232,13 @@ class Scene(Fixed):
 @takes_options("scene", "overrides", "lights")
 def load(path: Union[str, "os.PathLike[str]"], *,
          materials_file: Union[None, str, "os.PathLike[str]"] = None,
-         sky: Any = None, **others: Any) -> Scene:
+         sky: Any = None, lights: Any = (), **others: Any) -> Scene:
     """Reads a scene file, its format told by the extension (.obj, .glb, .stl, .msh, .ply, ...).
 
     Options that may be repeated are lists, or one text; set="lamp.emission=100". NAMEs are those of
     materials, objects or surfaces, patterns ("*wall*"), or "all". sky: radiance, W/m^2/sr, one
-    number or three. The options are those of the command line. What was repaired is in Scene.notes,
+    number or three. lights: those without a surface, rad.Light(...) each; they replace the file's of
+    their names. The options are those of the command line. What was repaired is in Scene.notes,
     and said by UserWarnings.
 
     The scene's arrays are views of what was read, no copies.
@@ -211,14 +248,15 @@ def load(path: Union[str, "os.PathLike[str]"], *,
     >>> rad.load("data/cornell-box.obj", set=["white.reflectance=0.9"])
     <Scene of 18 faces on 8 surfaces from data/cornell-box.obj>
     """
-    lights = {light["name"] for light in _core.options("lights")}
+    kinds = {light["name"] for light in _core.options("lights")}
     lists = {option["name"] for option in _core.options("overrides") if isinstance(option["value"], list)}
     options = more(("scene", "overrides", "lights"), others, "load")
     given = {name: texts(name, value) if name in lists else value
-             for name, value in options.items() if name not in lights}
+             for name, value in options.items() if name not in kinds}
     if materials_file is not None:
         given["materials_file"] = path_text("materials_file", materials_file)
-    given["lights"] = _lights({"sky": sky, **{name: options[name] for name in lights & options.keys()}})
+    given["lights"] = _lights({"sky": sky, **{name: options[name] for name in kinds & options.keys()}},
+                              lights)
     scene = Scene._of(_core.load(path_text("path", path), given))
     tell(scene.notes)
     return scene

@@ -139,7 +139,7 @@ void SceneChecks::reportLoneShell(SceneInfo& info) const {
   const ConnectedPart& part = topology_.parts.front();
   if (!part.closed || !(part.volume > 0) || !isOneSided(part)) return;
   info.problems.push_back(
-      {anyShines(scene_.lights) ? Severity::info : Severity::warning,
+      {anyShinesIn(scene_.lights) ? Severity::info : Severity::warning,
        fmt::format("{}: closed, faces outwards and is all there is: nothing inside sees anything; "
                    "if it is a room, turn it over, {}",
                    namesOf(part), flipOption(surfacesOf(part), scene_.surfaces.size()))});

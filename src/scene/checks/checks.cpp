@@ -69,7 +69,9 @@ void SceneChecks::reportLight(SceneInfo& info) const {
   }
   // A closed body that faces outwards is lit by the sky all around.
   const bool sky_is_seen = !enclosed();
-  const bool sky_shines = anyShines(scene_.lights);
+  const bool sky_shines = anyShinesIn(scene_.lights);
+  any |= std::ranges::any_of(
+      scene_.lights, [](const Light& light) { return light.shines() && !light.isFromOutside(); });
   if (!any && !(sky_is_seen && sky_shines)) {
     info.problems.push_back(
         {Severity::info,

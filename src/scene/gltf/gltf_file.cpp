@@ -152,9 +152,13 @@ void parse(const std::string& content, GltfFile& file) {
 }  // namespace
 
 bool isSupportedGltfExtension(const std::string& name) {
-  constexpr std::array<std::string_view, 6> kSupported = {
-      "KHR_materials_emissive_strength",     "KHR_texture_transform", "KHR_mesh_quantization",
-      "KHR_materials_pbrSpecularGlossiness", "EXT_texture_webp",      "EXT_mesh_gpu_instancing"};
+  constexpr std::array<std::string_view, 7> kSupported = {"KHR_materials_emissive_strength",
+                                                          "KHR_texture_transform",
+                                                          "KHR_mesh_quantization",
+                                                          "KHR_materials_pbrSpecularGlossiness",
+                                                          "EXT_texture_webp",
+                                                          "EXT_mesh_gpu_instancing",
+                                                          kGltfLights};
   return isGltfCompression(name) ||
          std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
 }

@@ -15,6 +15,9 @@ namespace radiosity {
 /// Whether we read an extension.
 bool isSupportedGltfExtension(const std::string& name);
 
+/// Points, spots and suns.
+inline constexpr const char* kGltfLights = "KHR_lights_punctual";
+
 /// Whether an extension is about materials, textures, lights or what else does not move a vertex. A
 /// file that requires one that we do not read can be read without it.
 bool leavesGeometry(const std::string& name);

@@ -41,6 +41,7 @@ class Reader {
                 const std::vector<Vec2>& texcoords, const std::vector<Vec3>& colours,
                 Index surface);
   void readCamera(const tinygltf::Node& node, const Transform& transform);
+  void readLight(const tinygltf::Node& node, const Transform& transform);
   std::vector<Index> addVertices(const std::vector<Vec3>& positions);
   std::vector<Vec3> readColours(const tinygltf::Primitive& primitive, Index material,
                                 const std::string& object, const std::string& what);
@@ -60,6 +61,7 @@ class Reader {
   SceneBuilder builder_;
   GltfMaterials materials_;
   UniqueNames object_names_;
+  UniqueNames light_names_;
   FeatureNotes ignored_;
   std::vector<bool> visited_;
   std::map<Index, std::size_t> faces_of_;  ///< by surface, so far
@@ -71,6 +73,7 @@ void Reader::read() {
     ignored_.add("one scene of the file is read",
                  fmt::format("number {}", std::max(model_.defaultScene, 0)), Severity::warning);
   }
+  for (const Light& kind : lightKinds()) light_names_.make(kind.name);
   visited_.assign(model_.nodes.size(), false);
   forEachGltfNode(file_, [this](int node, const Transform& transform, const std::string& what) {
     readNode(node, transform, what);
@@ -92,6 +95,7 @@ void Reader::readNode(int index, const Transform& transform, const std::string& 
   visited_[std::size_t(index)] = true;
   if (node.mesh >= 0) readMesh(index);
   if (node.camera >= 0) readCamera(node, transform);
+  if (node.extensions.contains(kGltfLights)) readLight(node, transform);
   for (const auto& [extension, value] : node.extensions) {
     if (isSupportedGltfExtension(extension)) continue;
     ignored_.add(extension + " is not used, node", what.substr(5), Severity::warning);
@@ -270,11 +274,49 @@ void Reader::readCamera(const tinygltf::Node& node, const Transform& transform) 
   scene_.cameras.push_back(camera);
 }
 
-void Reader::noteUnused() {
-  for (const tinygltf::Light& light : model_.lights) {
-    ignored_.add("punctual lights give no light here, make them surfaces that emit",
-                 light.name.empty() ? light.type : light.name, Severity::warning);
+/// KHR_lights_punctual: candela, and lux of a sun, in linear colours; along -z of the node, which
+/// its scale does not change.
+void Reader::readLight(const tinygltf::Node& node, const Transform& transform) {
+  const std::string what = "node " + node.name;
+  const tinygltf::Value& number = node.extensions.at(kGltfLights).Get("light");
+  if (!number.IsInt()) file_.fail(what + ": its light is no number; export the scene again");
+  const tinygltf::Light& gltf = file_.at(model_.lights, number.GetNumberAsInt(), "light", what);
+  const std::string named = node.name.empty() ? gltf.name : node.name;
+  const Vec3 at(transform[3]);
+  const Vec3 forward(transform * glm::dvec4(0, 0, -1, 0));
+  Light light{light_names_.make(named.empty() ? gltf.type : named), {}, {1.0, 1.0, 1.0}};
+  const bool usable = isFinite(at) && isFinite(forward) && glm::length(forward) > 0;
+  if (gltf.type == "point") {
+    light.kind = PointLight{at, gltf.range};
+  } else if (gltf.type == "spot" && usable) {
+    const auto degrees = [](double radians) { return radians * 180 / std::numbers::pi; };
+    light.kind = SpotLight{at, at + glm::normalize(forward), degrees(gltf.spot.innerConeAngle),
+                           degrees(gltf.spot.outerConeAngle), gltf.range};
+  } else if (gltf.type == "directional" && usable) {
+    Sun sun;
+    sun.toward = -glm::normalize(forward);
+    sun.diameter = 0;
+    light.kind = sun;
+  } else {
+    ignored_.add("lights without a direction, or of a kind that is none, give no light", light.name,
+                 Severity::warning);
+    return;
   }
+  for (std::size_t b = 0; b < light.strength.size(); ++b) {
+    const double colour = gltf.color.size() == light.strength.size() ? gltf.color[b] : 1;
+    light.strength[b] = gltf.intensity * colour / kLumensPerWatt;
+  }
+  try {
+    light.validate();
+  } catch (const InputError& error) {
+    file_.fail(fmt::format("{}: {}; correct the light", what, error.what()));
+  }
+  ignored_.add(fmt::format("lamps in candela and lux, taken at {} lm/W", kLumensPerWatt),
+               light.name);
+  setLight(scene_.lights, std::move(light));
+}
+
+void Reader::noteUnused() {
   for (std::size_t k = 0; k < visited_.size(); ++k) {
     if (visited_[k] || model_.nodes[k].mesh < 0) continue;
     const std::string& name = model_.nodes[k].name;

@@ -7,8 +7,8 @@
 #include <ranges>
 
 #include "base/option_list.h"
+#include "radiosity/light.h"
 #include "radiosity/spelling.h"
-#include "scene/lights/light_text.h"
 
 namespace radiosity {
 
@@ -26,35 +26,10 @@ std::vector<Light> kindsOf(std::index_sequence<K...> /*all*/) {
   return kinds;
 }
 
-/// Whether a parameter of the light has that name and can have that value, which it then has.
-bool setParameter(Light& light, std::string_view name, std::string_view value) {
-  bool set = false;
-  const auto list = [&](const OptionLine& line, auto& field, const OptionRange& = {}) {
-    if (line.optionName() == name) set = readOption(line, value, field);
-  };
-  std::visit([&](auto& kind) { kind.describe(list, kind); }, light.kind);
-  return set;
-}
-
-[[noreturn]] void failAt(const Light& light, const std::string& text, int bands) {
-  throw InputError(fmt::format(
-      "{}: '{}' is not one finite number or {} with commas, {}{}", spelled(light.name), text,
-      bands == 3 ? "three" : std::to_string(bands), light.traits().unit, light.parametersText()));
-}
-
 }  // namespace
 
 const LightTraits& Light::traits() const {
   return std::visit([](const auto& of) -> const LightTraits& { return of.kTraits; }, kind);
-}
-
-std::string Light::parametersText() const {
-  std::string text;
-  const auto list = [&](const OptionLine& line, const auto& value, const OptionRange& = {}) {
-    text += "," + line.optionName() + "=" + optionText(line, value);
-  };
-  std::visit([&](const auto& of) { of.describe(list, of); }, kind);
-  return text;
 }
 
 bool Light::shines() const {
@@ -63,10 +38,6 @@ bool Light::shines() const {
 
 bool Light::isAllRound() const {
   return std::visit([](const auto& of) { return requires { of.radiance(1.0); }; }, kind);
-}
-
-double Light::irradiance(std::size_t band, const LitPlace& place) const {
-  return std::visit([&](const auto& of) { return of.irradiance(strength[band], place); }, kind);
 }
 
 double Light::radiance(std::size_t band) const {
@@ -78,76 +49,98 @@ double Light::radiance(std::size_t band) const {
       kind);
 }
 
+double Light::fromAround(std::size_t band, double open) const {
+  return std::numbers::pi * radiance(band) * open;
+}
+
+LightRay Light::ray(const Vec3& place, double u, double v) const {
+  return std::visit(
+      [&](const auto& of) {
+        if constexpr (requires { of.ray(place, u, v); }) return of.ray(place, u, v);
+        return LightRay();
+      },
+      kind);
+}
+
+bool Light::isWide() const {
+  return std::visit(
+      [](const auto& of) {
+        if constexpr (requires { of.isWide(); }) return of.isWide();
+        return false;
+      },
+      kind);
+}
+
+std::optional<double> Light::share(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  return std::visit(
+      [&](const auto& of) -> std::optional<double> {
+        if constexpr (requires { of.share(a, b, c); }) return of.share(a, b, c);
+        return std::nullopt;
+      },
+      kind);
+}
+
+std::optional<double> Light::power(std::size_t band) const {
+  return std::visit(
+      [&](const auto& of) -> std::optional<double> {
+        if constexpr (requires { of.power(); }) return strength[band] * of.power();
+        return std::nullopt;
+      },
+      kind);
+}
+
+std::optional<Vec3> Light::place() const {
+  return std::visit(
+      [](const auto& of) -> std::optional<Vec3> {
+        if constexpr (requires { of.at; }) return of.at;
+        return std::nullopt;
+      },
+      kind);
+}
+
+bool Light::isFromOutside() const { return isAllRound() || !place(); }
+
+std::string Light::option() const {
+  return traits().single ? spelled(traits().word) : spelled("light", traits().word);
+}
+
+void Light::settle(Up up) {
+  std::visit(
+      [up](auto& of) {
+        if constexpr (requires { of.settle(up); }) of.settle(up);
+      },
+      kind);
+}
+
 void Light::validate() const {
   for (const double value : strength) {
     if (value >= 0 && std::isfinite(value)) continue;
     throw InputError(
         fmt::format("{} {} {} is not a finite value of 0 or more", name, traits().strength, value));
   }
-  std::visit([](const auto& of) { requireRanges(of); }, kind);
+  std::visit(
+      [](const auto& of) {
+        requireRanges(of);
+        if constexpr (requires { of.validate(); }) of.validate();
+      },
+      kind);
+}
+
+Light uniformSky(std::vector<double> radiance) {
+  return {UniformSky::kTraits.word, UniformSky(), std::move(radiance)};
 }
 
 std::vector<Light> lightKinds() {
   return kindsOf(std::make_index_sequence<std::variant_size_v<LightKind>>());
 }
 
-Light lightOf(const std::string& word, const std::string& text, int bands) {
-  std::vector<Light> kinds = lightKinds();
-  const auto kind = std::ranges::find(kinds, word, &Light::name);
-  if (kind == kinds.end()) {
-    throw InputError(fmt::format("no light is called '{}'; there are {}", word,
-                                 fmt::join(kinds | std::views::transform(&Light::name), ", ")));
-  }
-  Light light = std::move(*kind);
-  for (const std::string_view part : splitAt(text, ',')) {
-    const std::size_t equals = part.find('=');
-    const std::optional<double> number = parseNumber(part);
-    if (number) light.strength.push_back(*number);
-    if (number || (equals != std::string_view::npos &&
-                   setParameter(light, part.substr(0, equals), part.substr(equals + 1)))) {
-      continue;
-    }
-    failAt(light, text, bands);
-  }
-  if (light.strength.size() == 1) light.strength.resize(std::size_t(bands), light.strength[0]);
-  if (light.strength.size() != std::size_t(bands)) failAt(light, text, bands);
-  return light;
-}
-
-std::vector<double> skyRadiance(std::span<const Light> lights) {
-  const auto sky = std::ranges::find(lights, UniformSky::kTraits.word, &Light::name);
-  return sky == lights.end() ? std::vector<double>() : sky->strength;
-}
-
-std::vector<std::string> otherLights(std::span<const Light> lights) {
-  std::vector<std::string> texts;
-  for (const Light& light : lights) {
-    if (light.name == UniformSky::kTraits.word) continue;
-    texts.push_back(light.name + "=" + strengthText(light.strength) + light.parametersText());
-  }
-  return texts;
-}
-
-std::vector<Light> lightsOf(const std::vector<double>& sky, std::span<const std::string> others,
-                            int bands) {
-  std::vector<Light> lights;
-  if (!sky.empty()) lights.push_back(uniformSky(sky));
-  for (const std::string& text : others) {
-    const std::size_t equals = text.find('=');
-    const bool whole = equals != std::string::npos;
-    lights.push_back(lightOf(text.substr(0, equals), whole ? text.substr(equals + 1) : "", bands));
-  }
-  return lights;
-}
-
-std::string strengthText(std::span<const double> strength) {
-  if (strength.empty()) return "0";
-  const bool grey = std::ranges::all_of(strength, [&](double s) { return s == strength[0]; });
-  return grey ? fmt::format("{}", strength[0]) : fmt::format("{}", fmt::join(strength, ","));
-}
-
 bool anyShines(std::span<const Light> lights) {
   return std::ranges::any_of(lights, &Light::shines);
+}
+
+bool anyShinesIn(std::span<const Light> lights) {
+  return std::ranges::any_of(
+      lights, [](const Light& light) { return light.isFromOutside() && light.shines(); });
 }
 
 std::vector<double> background(std::span<const Light> lights, int bands) {
@@ -173,6 +166,17 @@ void setLight(std::vector<Light>& lights, Light light) {
   } else {
     *same = std::move(light);
   }
+}
+
+void addLight(std::vector<Light>& lights, Light light) {
+  const std::string word = light.traits().word;
+  const auto isTaken = [&](const std::string& name) {
+    return std::ranges::find(lights, name, &Light::name) != lights.end();
+  };
+  if (!light.traits().single && light.name == word) {
+    for (int k = 2; isTaken(light.name); ++k) light.name = fmt::format("{} {}", word, k);
+  }
+  setLight(lights, std::move(light));
 }
 
 }  // namespace radiosity

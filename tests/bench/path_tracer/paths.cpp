@@ -55,6 +55,22 @@ Vec3 aimedLight(const TracedScene& scene, const Place& place, bool alone, Scramb
          (std::numbers::inv_pi * std::numbers::inv_pi * cos_here / (by_aim + by_chance));
 }
 
+/// Radiance reflected from a place of reflectance 1 that comes from lamps without a surface.
+Vec3 lampLight(const TracedScene& scene, const Place& place, ScrambledPoints& points) {
+  Vec3 radiance(0.0);
+  for (const Light& lamp : scene.lamps()) {
+    const Vec2 choice = points.next();
+    const LightRay ray = lamp.ray(place.at, choice.x, choice.y);
+    const double cosine = glm::dot(ray.toward, place.normal);
+    if (!(cosine > 0 && ray.share > 0)) continue;
+    const Vec3 end = place.at + ray.toward * std::min(ray.distance, scene.beyond());
+    if (!scene.sees(place.at, end, place.start(ray.toward))) continue;
+    const Vec3 strength(lamp.strength[0], lamp.strength[1], lamp.strength[2]);
+    radiance += strength * (std::numbers::inv_pi * cosine * ray.share);
+  }
+  return radiance;
+}
+
 }  // namespace
 
 PathLight tracePath(const TracedScene& scene, const Vec3& eye, const Vec3& direction,
@@ -79,6 +95,7 @@ PathLight tracePath(const TracedScene& scene, const Vec3& eye, const Vec3& direc
     }
     weight *= on.side[hit.side].reflectance;
     if (weight == Vec3(0.0)) return light;
+    light.radiance += weight * lampLight(scene, place, points);
     if (scene.anythingShines()) {
       light.radiance += weight * aimedLight(scene, place, place.smooth, points);
     }

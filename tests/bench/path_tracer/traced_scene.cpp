@@ -72,6 +72,7 @@ TracedScene::TracedScene(const PatchMesh& mesh, const PatchMaterials& materials,
   }
   const std::vector<double> sky = background(materials.lights, 3);
   if (!sky.empty()) sky_ = {sky[0], sky[1], sky[2]};
+  lamps_ = aimedLights(materials.lights);
   findLights();
   build();
 }
@@ -107,6 +108,7 @@ void TracedScene::build() {
   }
   middle_ = 0.5 * (lower + upper);
   lift_ = kLift * glm::distance(lower, upper);
+  beyond_ = 2 * glm::distance(lower, upper);
   device_ = rtcNewDevice(nullptr);
   if (device_ == nullptr) throw RunError("Embree cannot be started on this processor");
   scene_ = rtcNewScene(device_);

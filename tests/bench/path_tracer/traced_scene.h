@@ -62,11 +62,15 @@ class TracedScene {
   /// A place on what shines, by exitance times area. Only where anything().
   LightSample light(double choice, const Vec2& place) const;
   bool anythingShines() const { return !shining_.empty(); }
+  /// Those without a surface that no ray finds.
+  const std::vector<Light>& lamps() const { return lamps_; }
 
   const TracedTriangle& triangle(Index t) const { return triangles_[t]; }
   /// Metres by which rays start off a surface.
   double lift() const { return lift_; }
   const Vec3& sky() const { return sky_; }
+  /// Metres: longer than the scene.
+  double beyond() const { return beyond_; }
 
  private:
   struct Shining {
@@ -82,7 +86,9 @@ class TracedScene {
   std::vector<Shining> shining_;
   Vec3 middle_{0.0};
   Vec3 sky_{0.0};  ///< radiance
+  std::vector<Light> lamps_;
   double lift_ = 0;
+  double beyond_ = 0;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };

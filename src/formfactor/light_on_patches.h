@@ -1,0 +1,56 @@
+// What lights without a surface give to patches and to other places.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+/// Irradiance of places, N * bands, row-major, W/m^2.
+struct LightFall {
+  std::vector<double> irradiance;
+  /// Standard, estimated: the root of the mean square, by area, over that of irradiance. 0 where
+  /// nothing stands between places and lights.
+  double error = 0;
+};
+
+/// Looks at a mesh, which is kept by reference, once and only if a light is aimed. All cores; the
+/// same bits for any number of them.
+class LightOnPatches {
+ public:
+  explicit LightOnPatches(const PatchMesh& mesh);
+  ~LightOnPatches();
+
+  /// Means over the patches of the lights that come from where nothing stands. `open`: by unknown,
+  /// the share of what leaves it that meets nothing, of which an exact row's account may be a
+  /// little below 0. Errors: InputError if shares are not those of the mesh.
+  std::vector<double> fromAround(std::span<const Light> lights, std::span<const double> open,
+                                 int bands) const;
+  /// Means over the patches of aimed lights. Throws Cancelled.
+  LightFall aimed(std::span<const Light> lights, int bands, Progress& progress);
+  /// The sum of both.
+  LightFall all(std::span<const Light> lights, std::span<const double> open, int bands,
+                Progress& progress);
+
+  /// A place that is on a polygon of the mesh, or off them all (kNone).
+  struct Place {
+    Vec3 position{0.0};
+    Vec3 normal{0.0};
+    Index own = kNone;
+  };
+  /// The irradiance of places by aimed lights.
+  std::vector<double> aimedAt(std::span<const Light> lights, std::span<const Place> places,
+                              int bands, Progress& progress);
+
+ private:
+  struct Rays;
+  const Rays& rays();
+
+  const PatchMesh& mesh_;
+  std::unique_ptr<Rays> rays_;
+};
+
+}  // namespace radiosity

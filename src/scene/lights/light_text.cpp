@@ -1,0 +1,274 @@
+// Lights from their texts, and back.
+#include "scene/lights/light_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <ranges>
+
+#include "base/option_list.h"
+
+namespace radiosity {
+
+namespace {
+
+constexpr std::string_view kName = "name";
+/// They end a value, or a light in the key of a stage.
+constexpr std::string_view kReserved = "%,;= \n\t";
+
+std::string encoded(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    text += kReserved.find(c) == kReserved.npos ? std::string(1, c)
+                                                : fmt::format("%{:02x}", std::uint8_t(c));
+  }
+  return text;
+}
+
+std::string decoded(std::string_view text) {
+  std::string name;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    unsigned code = 0;
+    const char* digits = text.data() + k + 1;
+    const bool whole = text[k] == '%' && k + 2 < text.size() &&
+                       std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2;
+    name += whole ? char(code) : text[k];
+    if (whole) k += 2;
+  }
+  return name;
+}
+
+bool isSky(const Light& light) { return std::holds_alternative<UniformSky>(light.kind); }
+
+/// A parameter with its values, without a name where they stand first.
+struct Given {
+  std::string name;
+  std::vector<std::string_view> values;
+
+  std::string text() const { return fmt::format("{}", fmt::join(values, ",")); }
+};
+
+/// What stands between commas belongs to the NAME= before it.
+std::vector<Given> givenIn(std::string_view text) {
+  std::vector<Given> all;
+  if (text.empty()) return all;
+  for (const std::string_view part : splitAt(text, ',')) {
+    const std::size_t equals = part.find('=');
+    if (equals != part.npos) {
+      all.push_back({std::string(part.substr(0, equals)), {part.substr(equals + 1)}});
+    } else {
+      if (all.empty()) all.emplace_back();
+      all.back().values.push_back(part);
+    }
+  }
+  return all;
+}
+
+/// Calls visit(line, field) for each parameter of a light.
+template <class Kind, class Visit>
+void forParameters(Kind& kind, const Visit& visit) {
+  const auto list = [&](const OptionLine& line, auto& field, const OptionRange& = {}) {
+    visit(line, field);
+  };
+  std::visit([&](auto& of) { of.describe(list, of); }, kind);
+}
+
+std::span<const char* const> unnamedOf(const Light& light) {
+  return std::visit(
+      [](const auto& of) -> std::span<const char* const> {
+        if constexpr (requires { of.kUnnamed; }) return of.kUnnamed;
+        return {};
+      },
+      light.kind);
+}
+
+/// A light while its text is read.
+class Reading {
+ public:
+  Reading(const std::string& word, const std::string& text, int bands)
+      : light_(ofKind(word)), text_(text), bands_(std::size_t(bands)) {}
+
+  Light light() {
+    for (const Given& given : givenIn(text_)) take(given);
+    if (light_.strength.empty() && light_.traits().usual > 0) {
+      light_.strength = {light_.traits().usual};
+    }
+    if (light_.strength.size() == 1) light_.strength.resize(bands_, light_.strength[0]);
+    if (light_.strength.size() != bands_) failAtStrength();
+    settleUnit();
+    return std::move(light_);
+  }
+
+ private:
+  static Light ofKind(const std::string& word) {
+    std::vector<Light> kinds = lightKinds();
+    const auto kind = std::ranges::find(kinds, word, &Light::name);
+    if (kind != kinds.end()) return std::move(*kind);
+    throw InputError(fmt::format("no light is called '{}'; there are {}", word,
+                                 fmt::join(kinds | std::views::transform(&Light::name), ", ")));
+  }
+
+  void take(const Given& given) {
+    if (given.name == kName) {
+      light_.name = decoded(given.text());
+      if (light_.name.empty()) fail("has an empty name");
+      const auto isKind = [&](const Light& kind) {
+        return kind.traits().single && kind.name == light_.name &&
+               kind.kind.index() != light_.kind.index();
+      };
+      if (std::ranges::any_of(lightKinds(), isKind)) {
+        fail(fmt::format("'{}' is the name of another light; give it one of its own", light_.name));
+      }
+    } else if (given.name.empty() && isUnnamed(given)) {
+      for (std::size_t k = 0; k < given.values.size(); ++k) {
+        set(unnamedOf(light_)[k], std::string(given.values[k]));
+      }
+    } else if (given.name.empty() || given.name == light_.traits().strength) {
+      takeStrength(given);
+    } else {
+      set(given.name, given.text());
+    }
+  }
+
+  bool isUnnamed(const Given& given) const {
+    const auto isNoNumber = [](std::string_view value) { return !parseNumber(value); };
+    return given.values.size() == unnamedOf(light_).size() && isNoNumber(given.values.back()) &&
+           !std::ranges::all_of(given.values, isNoNumber);
+  }
+
+  void takeStrength(const Given& given) {
+    light_.strength.clear();
+    for (const std::string_view value : given.values) {
+      double number = 0;
+      const char* end = value.data() + value.size();
+      const auto [rest, error] = std::from_chars(value.data(), end, number);
+      const std::string_view unit(rest, std::size_t(end - rest));
+      if (error != std::errc() || !std::isfinite(number) || !isUnit(unit)) failAtStrength();
+      if (!unit.empty()) unit_ = unit;
+      light_.strength.push_back(number);
+    }
+  }
+
+  bool isUnit(std::string_view unit) const {
+    const LightTraits& traits = light_.traits();
+    const bool of_power = unit == "W" || unit == "lm";
+    const Light one{light_.name, light_.kind, {1.0}};
+    return unit.empty() || unit == traits.unit || unit == traits.photometric ||
+           (of_power && one.power(0));
+  }
+
+  /// The cone that a power spreads over may be given after it.
+  void settleUnit() {
+    double each = 1;
+    if (unit_ == light_.traits().photometric || unit_ == "lm") each = 1 / kLumensPerWatt;
+    if (unit_ == "W" || unit_ == "lm") {
+      light_.validate();
+      each /= *Light{light_.name, light_.kind, {1.0}}.power(0);
+    }
+    for (double& strength : light_.strength) strength *= each;
+  }
+
+  void set(const std::string& name, const std::string& value) {
+    bool known = false;
+    bool read = false;
+    forParameters(light_.kind, [&](const OptionLine& line, auto& field) {
+      if (line.optionName() != name) return;
+      known = true;
+      read = readOption(line, value, field);
+      if (!read) fail(fmt::format("{} '{}' is not {}", name, value, line.value));
+    });
+    if (known) return;
+    std::vector<std::string> names = light_.parameterNames();
+    names.insert(names.begin(), {light_.traits().strength, std::string(kName)});
+    fail(fmt::format("'{}' is no parameter of it; there are {}", name, fmt::join(names, ", ")));
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}: {}", light_.option(), what));
+  }
+
+  [[noreturn]] void failAtStrength() const {
+    const LightTraits& traits = light_.traits();
+    fail(fmt::format("'{}' is not one finite number or {} with commas, {}{}", text_,
+                     bands_ == 3 ? "three" : std::to_string(bands_), traits.unit,
+                     traits.single ? "" : fmt::format(" (or {})", traits.photometric)));
+  }
+
+  Light light_;
+  const std::string& text_;
+  std::size_t bands_;
+  std::string unit_;
+};
+
+}  // namespace
+
+std::vector<std::string> Light::parameterNames() const {
+  std::vector<std::string> names;
+  forParameters(kind, [&](const OptionLine& line, const auto& /*field*/) {
+    names.push_back(line.optionName());
+  });
+  return names;
+}
+
+std::string Light::parametersText() const {
+  std::vector<Light> kinds = lightKinds();
+  std::vector<std::string> usual;
+  forParameters(kinds[kind.index()].kind, [&](const OptionLine& line, const auto& value) {
+    usual.push_back(optionText(line, value));
+  });
+  std::string text;
+  std::size_t k = 0;
+  forParameters(kind, [&](const OptionLine& line, const auto& value) {
+    const std::string now = optionText(line, value);
+    if (now != usual[k++]) text += "," + line.optionName() + "=" + now;
+  });
+  if (name != traits().word) text += fmt::format(",{}={}", kName, encoded(name));
+  return text;
+}
+
+Light lightOf(const std::string& word, const std::string& text, int bands) {
+  return Reading(word, text, bands).light();
+}
+
+Light lightOf(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  return lightOf(text.substr(0, comma), comma == text.npos ? "" : text.substr(comma + 1));
+}
+
+std::vector<double> skyRadiance(std::span<const Light> lights) {
+  const auto sky = std::ranges::find_if(lights, isSky);
+  return sky == lights.end() ? std::vector<double>() : sky->strength;
+}
+
+std::vector<std::string> otherLights(std::span<const Light> lights) {
+  std::vector<std::string> texts;
+  for (const Light& light : lights) {
+    if (isSky(light)) continue;
+    texts.push_back(fmt::format("{}={}{}", light.traits().word, strengthText(light.strength),
+                                light.parametersText()));
+  }
+  return texts;
+}
+
+std::vector<Light> lightsOf(const std::vector<double>& sky, std::span<const std::string> others,
+                            int bands) {
+  std::vector<Light> lights;
+  if (!sky.empty()) lights.push_back(uniformSky(sky));
+  for (const std::string& text : others) {
+    const std::size_t equals = text.find('=');
+    const bool whole = equals != std::string::npos;
+    lights.push_back(lightOf(text.substr(0, equals), whole ? text.substr(equals + 1) : "", bands));
+  }
+  return lights;
+}
+
+std::string strengthText(std::span<const double> strength) {
+  if (strength.empty()) return "0";
+  const bool grey = std::ranges::all_of(strength, [&](double s) { return s == strength[0]; });
+  return grey ? fmt::format("{}", strength[0]) : fmt::format("{}", fmt::join(strength, ","));
+}
+
+}  // namespace radiosity
