@@ -90,6 +90,35 @@ std::string wordOfUnit(std::string unit) {
   return unit;
 }
 
+/// Lights without a surface that stand somewhere.
+void describeLamps(Report& report, const Scene& scene) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Light& light : scene.lights) {
+    if (light.isAllRound()) continue;
+    std::string watts;
+    for (std::size_t b = 0; b < light.strength.size(); ++b) {
+      const std::optional<double> power = light.power(b);
+      if (power) watts += fmt::format("{}{:.5g}", b == 0 ? "" : ", ", *power);
+    }
+    const LightRay ray = light.ray(Vec3(0.0), 0, 0);
+    const Vec3 where = light.place().value_or(ray.toward);
+    rows.push_back(
+        {light.name, light.traits().word,
+         fmt::format("{} {}", triple({light.strength[0], light.strength[1], light.strength[2]}),
+                     light.traits().unit),
+         fmt::format("{} {}", light.place() ? "at" : "towards", triple(where)), watts});
+  }
+  if (rows.empty()) return;
+  report.section("scene", "Lights");
+  report.table("lights",
+               {{"name", "light", false},
+                {"kind", "kind", false},
+                {"strength", "strength (R, G, B)", false},
+                {"stands", "stands", false},
+                {"power_W", "power W", false}},
+               rows);
+}
+
 }  // namespace
 
 void describeScene(Report& report, const Scene& scene) {
@@ -118,10 +147,12 @@ void describeScene(Report& report, const Scene& scene) {
   }
   report.count("emitters", "emitting surfaces", emitters);
   for (const Light& light : scene.lights) {
+    if (!light.isAllRound()) continue;
     const std::string unit = light.traits().unit;
     report.bands(light.name + "_" + wordOfUnit(unit), light.name + " (R G B)", light.strength,
                  unit);
   }
+  describeLamps(report, scene);
   report.section("scene", "Surfaces");
   report.table("surfaces",
                {{"name", "surface", false},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -50,10 +51,12 @@ std::vector<double> LightOnPatches::fromAround(std::span<const Light> lights,
 
 LightFall LightOnPatches::aimed(std::span<const Light> lights, int bands, Progress& progress) {
   const auto width = std::size_t(bands);
-  LightFall fall{std::vector<double>(mesh_.size() * width, 0.0)};
+  LightFall fall;
+  fall.irradiance.assign(mesh_.size() * width, 0.0);
   if (aimedLights(lights).empty()) return fall;
   const AimedLight light(mesh_, rays().rays, lights);
   std::vector<double> squares(mesh_.size(), 0.0);
+  std::vector<std::atomic<bool>> reaches(light.lights().size());
   progress.begin("light of lamps", mesh_.size(), "patches");
   parallelFor(mesh_.size(), 16, [&](std::size_t i) {
     progress.advance();
@@ -64,6 +67,7 @@ LightFall LightOnPatches::aimed(std::span<const Light> lights, int bands, Progre
       for (std::size_t l = 0; l < shares.size(); ++l) {
         const double strength = light.lights()[l].strength[b];
         const double error = shares[l].error * strength;
+        if (shares[l].value > 0) reaches[l].store(true, std::memory_order_relaxed);
         fall.irradiance[i * width + b] += shares[l].value * strength;
         squares[i] += error * error;
       }
@@ -71,6 +75,9 @@ LightFall LightOnPatches::aimed(std::span<const Light> lights, int bands, Progre
   });
   progress.check();
   progress.end();
+  for (std::size_t l = 0; l < reaches.size(); ++l) {
+    if (!reaches[l]) fall.lost.push_back(light.lights()[l].name);
+  }
   double off = 0;
   double whole = 0;
   for (std::size_t k = 0; k < fall.irradiance.size(); ++k) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "radiosity/patch_mesh.h"
@@ -15,6 +16,7 @@ struct LightFall {
   /// Standard, estimated: the root of the mean square, by area, over that of irradiance. 0 where
   /// nothing stands between places and lights.
   double error = 0;
+  std::vector<std::string> lost;  ///< names of aimed lights that reach none of the places
 };
 
 /// Looks at a mesh, which is kept by reference, once and only if a light is aimed. All cores; the

@@ -232,12 +232,11 @@ void Overrides::replace(Light light, Up up) {
   const auto before = std::ranges::find(scene_.lights, light.name, &Light::name);
   const bool had_one = before != scene_.lights.end();
   const LightTraits& traits = light.traits();
-  Light nameless = light;
-  nameless.name = traits.word;
-  note(fmt::format("{}: {} {} -> {} {} {}{}", light.name, traits.strength,
+  const std::string stands = standText(light, up);
+  note(fmt::format("{}: {} {} -> {} {} {}", light.name, traits.strength,
                    describeBands(had_one ? coloursOf(*before) : Vec3(0.0)),
-                   describeBands(coloursOf(light)), traits.unit, traits.from,
-                   nameless.parametersText()));
+                   describeBands(coloursOf(light)), traits.unit,
+                   stands.empty() ? traits.from : stands));
   setLight(scene_.lights, std::move(light));
 }
 

@@ -80,8 +80,16 @@ std::string flipOption(const std::vector<std::string>& names, std::size_t all) {
 
 std::string unknownNameText(const Scene& scene, const std::string& name) {
   constexpr std::size_t kMostNames = 40;
-  const std::vector<std::string> names = nearestFirst(name, knownNames(scene));
-  return fmt::format("no surface, material or object {} {}; there are: {}",
+  std::vector<std::string> known = knownNames(scene);
+  bool any_light = false;
+  for (const Light& light : scene.lights) {
+    if (light.isAllRound()) continue;
+    any_light = true;
+    known.push_back(light.name);
+  }
+  const std::vector<std::string> names = nearestFirst(name, std::move(known));
+  return fmt::format("no surface, material{} object{} {} {}; there are: {}",
+                     any_light ? "," : " or", any_light ? " or light" : "",
                      isPattern(name) ? "matches" : "is called", name, joinNames(names, kMostNames));
 }
 

@@ -187,7 +187,12 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
 }
 
 void noteErrorOf(const LightFall& by_lights, SolveSummary& summary) {
-  if (!summary.usable() || !(by_lights.error > 0)) return;
+  if (!summary.usable()) return;
+  for (const std::string& name : by_lights.lost) {
+    summary.message +=
+        fmt::format("; {} lights nothing: it stands in a body or behind surfaces", name);
+  }
+  if (!(by_lights.error > 0)) return;
   summary.message += fmt::format("; light of lamps off by about {:.2g}%", 100 * by_lights.error);
 }
 

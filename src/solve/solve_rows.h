@@ -31,7 +31,7 @@ Solution solveRows(const FormFactors& factors, std::span<const double> reflectan
                    Progress& progress, const PatchNames& names, std::span<const double> by_lights,
                    std::span<const double> more);
 
-/// Says in the message how far what lights give may be off, where it may.
+/// Says in the message which lights reach nothing, and how far the others may be off.
 void noteErrorOf(const LightFall& by_lights, SolveSummary& summary);
 
 }  // namespace radiosity

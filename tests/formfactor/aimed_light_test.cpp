@@ -126,7 +126,9 @@ TEST(AimedLight, NothingComesFromBehindOrAlongASurface) {
   const PatchMesh mesh = facesOf(builder.scene());
   for (const char* text : {"point,1,at=0,0,-1", "point,1,at=5,0,0", "point,1,at=0,0,0",
                            "sun,1,toward=1,0,0,diameter=0", "sun,1,toward=0,0,-1"}) {
-    for (const double h : fallOn(mesh, text).irradiance) EXPECT_EQ(h, 0.0) << text;
+    const LightFall fall = fallOn(mesh, text);
+    for (const double h : fall.irradiance) EXPECT_EQ(h, 0.0) << text;
+    EXPECT_EQ(fall.lost.size(), 1u) << text;
   }
 }
 

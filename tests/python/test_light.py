@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import radiosity as rad
-from conftest import box
+from conftest import ROOT, box
 
 
 def dense_solution(F, rho, E):
@@ -72,6 +72,20 @@ def test_a_table_sums_the_matrix(cornell):
     assert cornell.between("lamp", "white") == pytest.approx(
         table.factors[table.names.index("lamp/light"), white].sum(), rel=1e-12)
     assert "| lamp/light |" in str(table)
+
+
+def test_a_lamp_without_a_surface_lights_a_room():
+    lamp = rad.Light("point", intensity="100cd", at=(0.5, 0.5, 0.5), name="my lamp")
+    scene = rad.load(ROOT / "data/furnace-cube.obj", set="all.emission=0", lights=[lamp, "spot,1W,at=.5,.5,.5"])
+    F = rad.form_factors(rad.mesh(scene, patches=24), tolerance=1e-6)
+    light = rad.solve(F, tolerance=1e-10)
+    # The cube is 1 m wide and closed: all of both lamps falls on it.
+    assert light.summary["energy"]["from_sky"] == pytest.approx([4 * np.pi * 100 / 683 + 1] * 3, rel=1e-2)
+    assert repr(lamp) == "<Light point,intensity=100cd,at=0.5,0.5,0.5,name=my%20lamp>"
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    floor = rad.Scene(square, [[0, 1, 2, 3]], sun="500,toward=0,0,1,diameter=0")
+    under_sun = rad.solve(rad.form_factors(rad.mesh(floor, patches=4)))
+    assert np.allclose(under_sun.irradiance, 500)
 
 
 def test_a_table_of_an_own_matrix_goes_by_row_names():

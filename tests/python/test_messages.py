@@ -330,3 +330,6 @@ def test_cells_of_meshio_that_are_not_read_are_named():
 
 def test_a_light_is_named():
     refused(lambda: rad.load(ROOT / CORNELL, sky="bright"), "^sky: 'bright' is not one finite number")
+    refused(lambda: rad.load(ROOT / CORNELL, lights="lamp,3"), "^light: no light is called 'lamp'")
+    refused(lambda: rad.load(ROOT / CORNELL, lights=[rad.Light("point", at=1)]), "at '1' is not X,Y,Z")
+    refused(lambda: rad.load(ROOT / CORNELL, lights=[3]), "^lights: is of type int")

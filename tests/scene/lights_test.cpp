@@ -131,7 +131,15 @@ TEST(Lights, TheSunKnowsWhereUpIs) {
   EXPECT_NEAR(std::asin(noon.toward.z), radiansOf(90 - 52.5 + 23.44), radiansOf(0.05));
   EXPECT_NEAR(noon.toward.x, 0, 0.01);
   EXPECT_LT(noon.toward.y, 0);
-  // Angles replace a direction.
+  // Angles replace a direction, one of them that part of it alone.
+  Light low_sun = lightOf("sun,1,elevation=30,azimuth=90");
+  low_sun.settle(Up::y);
+  std::get<Sun>(low_sun.kind).elevation = 45;
+  low_sun.settle(Up::y);
+  EXPECT_NEAR(
+      glm::distance(std::get<Sun>(low_sun.kind).toward, Vec3(std::sqrt(.5), std::sqrt(.5), 0)), 0,
+      1e-15);
+  EXPECT_EQ(standText(low_sun, Up::y), "45 degrees above the horizon, azimuth 90");
   EXPECT_NEAR(sunOf("1,toward=1,0,0,elevation=90", Up::z).toward.z, 1, 1e-15);
 }
 
@@ -151,7 +159,7 @@ TEST(Lights, ADiscHasItsSize) {
 }
 
 TEST(Lights, WhatIsNoLightIsRefusedInALine) {
-  EXPECT_EQ(refusal("lamp,1"), "no light is called 'lamp'; there are sky, point, spot, sun");
+  EXPECT_EQ(refusal("lamp,1"), "light: no light is called 'lamp'; there are sky, point, spot, sun");
   EXPECT_EQ(refusal("point"),
             "light='point': '' is not one finite number or three with commas, W/sr (or cd)");
   EXPECT_EQ(refusal("point,1,x=3"),

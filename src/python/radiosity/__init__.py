@@ -35,10 +35,10 @@ from ._heat import Heat, heat
 from ._light import Solution, solve
 from ._mesh import Mesh, mesh
 from ._picture import displayed, render
-from ._scene import Scene, load
+from ._scene import Light, Scene, load
 
 __all__ = [
-    "FormFactors", "Gathered", "Heat", "InputError", "Mesh", "Results", "RunError", "Scene", "Solution",
+    "FormFactors", "Gathered", "Heat", "InputError", "Light", "Mesh", "Results", "RunError", "Scene", "Solution",
     "Table", "__version__", "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "gather", "heat",
     "load", "mesh", "read", "render", "set_threads", "solve", "view_factors_from",
 ]

@@ -10,6 +10,7 @@
 #include <ranges>
 
 #include "base/option_list.h"
+#include "radiosity/spelling.h"
 
 namespace radiosity {
 
@@ -107,7 +108,8 @@ class Reading {
     std::vector<Light> kinds = lightKinds();
     const auto kind = std::ranges::find(kinds, word, &Light::name);
     if (kind != kinds.end()) return std::move(*kind);
-    throw InputError(fmt::format("no light is called '{}'; there are {}", word,
+    throw InputError(fmt::format("{}: no light is called '{}'; there are {}", spelled("light"),
+                                 word,
                                  fmt::join(kinds | std::views::transform(&Light::name), ", ")));
   }
 
@@ -263,6 +265,16 @@ std::vector<Light> lightsOf(const std::vector<double>& sky, std::span<const std:
     lights.push_back(lightOf(text.substr(0, equals), whole ? text.substr(equals + 1) : "", bands));
   }
   return lights;
+}
+
+std::string standText(const Light& light, Up up) {
+  if (const auto* sun = std::get_if<Sun>(&light.kind)) {
+    const SolarPosition stands = standingOf(sun->toward, up);
+    return fmt::format("{:.4g} degrees above the horizon, azimuth {:.4g}", stands.elevation,
+                       stands.azimuth);
+  }
+  const std::optional<Vec3> at = light.place();
+  return at ? fmt::format("at {:.6g},{:.6g},{:.6g}", at->x, at->y, at->z) : "";
 }
 
 std::string strengthText(std::span<const double> strength) {

@@ -17,6 +17,11 @@ std::vector<std::string> otherLights(std::span<const Light> lights);
 /// The inverse of these two.
 std::vector<Light> lightsOf(const std::vector<double>& sky, std::span<const std::string> others,
                             int bands);
+/// For people: where a light stands that is not everywhere: "at 1,2,2.5", "35 degrees above the
+/// horizon, azimuth 160".
+std::string standText(const Light& light, Up up);
+/// Of the direction to a sun.
+SolarPosition standingOf(const Vec3& toward, Up up);
 /// One number if all bands have the same; "0" of none.
 std::string strengthText(std::span<const double> strength);
 

@@ -11,6 +11,7 @@
 #include "base/finite.h"
 #include "base/geometry/plane_frame.h"
 #include "radiosity/light.h"
+#include "scene/lights/light_text.h"
 
 namespace radiosity {
 
@@ -129,6 +130,13 @@ std::optional<double> Sun::share(const Vec3& a, const Vec3& b, const Vec3& c) co
   return cosine * 2 / (1 + std::sqrt(1 + square));
 }
 
+SolarPosition standingOf(const Vec3& toward, Up up) {
+  const double high = up == Up::z ? toward.z : toward.y;
+  const double to_north = up == Up::z ? toward.y : -toward.z;
+  return {degreesOf(std::atan2(high, std::hypot(toward.x, to_north))),
+          turned(degreesOf(std::atan2(toward.x, to_north)))};
+}
+
 void Sun::settle(Up up) {
   if (!isFinite(toward)) throw InputError("sun: toward is not three finite numbers");
   const bool by_angles = elevation || azimuth || !time.empty();
@@ -138,7 +146,10 @@ void Sun::settle(Up up) {
     elevation = stands.elevation;
     azimuth = stands.azimuth;
   }
-  const double height = elevation.value_or(45);
+  // Of two angles the one that is not given stays as it is.
+  SolarPosition now{45, 180};
+  if (toward != Vec3(0.0)) now = standingOf(toward, up);
+  const double height = elevation.value_or(now.elevation);
   if (!(height > 0)) {
     throw InputError(fmt::format(
         "sun: {}it is {:.1f} degrees below the horizon and gives no "
@@ -147,7 +158,7 @@ void Sun::settle(Up up) {
         time.empty() ? "for light from below give toward=X,Y,Z" : "give a time of day"));
   }
   const double e = radians(height);
-  const double a = radians(azimuth.value_or(180) + north);
+  const double a = radians(azimuth.value_or(now.azimuth) + north);
   const double to_east = std::cos(e) * std::sin(a);
   const double to_north = std::cos(e) * std::cos(a);
   const Vec3 direction =
