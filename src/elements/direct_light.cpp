@@ -257,6 +257,7 @@ double EmitterLight::irradiance(const SurfacePoint& point, const ElementLights* 
           : aimed_.add({point.inner, point.normal, surface_.owners[point.owners]}, out);
   if (emitters_.empty()) return noise;
   const auto* of = static_cast<const Lights*>(lights);
+  if (occluders_ == nullptr) return noise + byRays(point, nullptr, out);
   if (of == nullptr || of->kind == ElementLights::Kind::by_rays) {
     return noise + byRays(point, of, out);
   }

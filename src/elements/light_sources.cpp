@@ -192,8 +192,9 @@ void LightSources::findDirect(bool keep_lights) {
     return;
   }
   const bool clip = emitters_.size() <= kMostClippedEmitters;
-  if (clip && !emitters_.empty())
+  if (clip && !emitters_.empty()) {
     occluders_ = std::make_unique<OccluderSet>(mesh_, elements_, progress_);
+  }
   emitter_light_ = std::make_unique<EmitterLight>(mesh_, materials_, surface_, elements_,
                                                   occluders_.get(), emitters_, rays_);
   RefinementRule how = rule(options_.tolerance, options_.smallest_edge);

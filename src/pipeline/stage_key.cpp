@@ -57,11 +57,17 @@ std::string reflectanceHash(const PatchMaterials& materials) {
   return hash.hex();
 }
 
-/// The sky's strength, then other lights.
+/// The sky's strength, then other lights; of many lights their hash.
 std::string lightsText(std::span<const Light> lights) {
-  std::string text = strengthText(skyRadiance(lights));
-  for (const std::string& light : otherLights(lights)) text += ";" + light;
-  return text;
+  constexpr std::size_t kLongest = 200;
+  std::string others;
+  for (const std::string& light : otherLights(lights)) others += ";" + light;
+  if (others.size() > kLongest) {
+    Hash hash;
+    hash.text(others);
+    others = ";" + hash.hex();
+  }
+  return strengthText(skyRadiance(lights)) + others;
 }
 
 std::string keyHash(const std::string& key) {

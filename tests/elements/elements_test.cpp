@@ -1,6 +1,7 @@
 // Light at the vertices of elements: against closed forms, and invariants of any field.
 #include "radiosity/elements.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -212,6 +213,41 @@ TEST(Elements, DirectLightAtPointsHasItsClosedForm) {
       std::array<double, 3> sum{};
       light.add(lit.lookup.rootAt(patch, {x, 0.3, 0}), {x, 0.3, 0}, 16, sum);
       ASSERT_NEAR(sum[0], pastTheBar(x, 0.3, half), 1e-9 * below) << half << ": " << x;
+    }
+  }
+}
+
+/// A lamp without a surface beside emitters: of these none, one that is clipped, and so many that
+/// rays are aimed at them. What it adds is its closed form, past a bar, and nothing behind it.
+TEST(Elements, AimedLightAddsToThatOfEmitters) {
+  for (const int side : {0, 1, 12}) {
+    SceneBuilder builder;
+    builder.level(builder.surface("floor", 0.0), -2, -2, 2, 2, 0);
+    builder.level(builder.surface("bar", 0.0), -0.1, -3, 0.1, 3, 1, false);
+    for (int k = 0; k < side * side; ++k) {
+      const double x = -0.9 + 0.15 * (k % side);
+      const double y = -0.9 + 0.15 * (k / side);
+      builder.level(builder.surface(fmt::format("lamp{}", k), 0.0, 1.0), x, y, x + .1, y + .1, 2.5,
+                    false);
+    }
+    const Scene scene = builder.scene();
+    const Lit lit(scene, 200);
+    const auto lightAt = [&](double x, bool lamp) {
+      PatchMaterials materials = lit.materials;
+      if (lamp) addLight(materials.lights, lightOf("point,5,at=0,0,2"));
+      Progress quiet;
+      const std::vector<double> dark(3 * lit.mesh.size(), 0.0);
+      const LightAtPoints light(lit.mesh, materials, dark, {}, {}, quiet);
+      const std::size_t patch = lit.patchAt("floor/floor", x, 0.3);
+      std::array<double, 3> sum{};
+      light.add(lit.lookup.rootAt(patch, {x, 0.3, 0}), {x, 0.3, 0}, 16, sum);
+      return sum[0];
+    };
+    for (const double x : {-1.5, 0.1, 1.2}) {
+      const double square = x * x + 0.09 + 4;
+      const double expected = std::abs(x) < 0.2 ? 0 : 5 * 2 / std::pow(square, 1.5);
+      // The same rays to emitters twice; coordinates of rays are in single precision.
+      EXPECT_NEAR(lightAt(x, true) - lightAt(x, false), expected, 1e-6) << side << ": " << x;
     }
   }
 }
