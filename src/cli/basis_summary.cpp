@@ -27,8 +27,7 @@ void summarizeBasis(Report& report, const LightBasis& basis, Detail detail) {
     }
     rows.push_back({basis.names[set], numberText(emitted)});
   }
-  report.table("sources", {{"name", "set", false}, {"emitted_W", "gives, W"}},
-               rows);
+  report.table("sources", {{"name", "set", false}, {"emitted_W", "gives, W"}}, rows);
 }
 
 }  // namespace radiosity::cli

@@ -43,6 +43,7 @@ GatherScene::GatherScene(const PatchMesh& patch_mesh, const PatchMaterials& of_p
 
 void GatherScene::findSources(Progress& progress) {
   std::vector<LightOnPatches::Place> places;
+  places.reserve(eyes.size());
   for (const Eye& eye : eyes) places.push_back({eye.position, eye.normal, eye.own});
   aimed = LightOnPatches(mesh).aimedAt(lights, places, int(bands), progress);
   source = materials.emission;

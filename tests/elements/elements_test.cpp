@@ -224,11 +224,13 @@ TEST(Elements, AimedLightAddsToThatOfEmitters) {
     SceneBuilder builder;
     builder.level(builder.surface("floor", 0.0), -2, -2, 2, 2, 0);
     builder.level(builder.surface("bar", 0.0), -0.1, -3, 0.1, 3, 1, false);
-    for (int k = 0; k < side * side; ++k) {
-      const double x = -0.9 + 0.15 * (k % side);
-      const double y = -0.9 + 0.15 * (k / side);
-      builder.level(builder.surface(fmt::format("lamp{}", k), 0.0, 1.0), x, y, x + .1, y + .1, 2.5,
-                    false);
+    for (int row = 0; row < side; ++row) {
+      for (int column = 0; column < side; ++column) {
+        const double x = -0.9 + 0.15 * column;
+        const double y = -0.9 + 0.15 * row;
+        const Index lamp = builder.surface(fmt::format("lamp{}-{}", row, column), 0.0, 1.0);
+        builder.level(lamp, x, y, x + .1, y + .1, 2.5, false);
+      }
     }
     const Scene scene = builder.scene();
     const Lit lit(scene, 200);

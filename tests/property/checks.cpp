@@ -6,10 +6,15 @@
 #include <bit>
 #include <cmath>
 #include <exception>
+#include <glm/geometric.hpp>
+#include <numbers>
 #include <optional>
+#include <random>
 #include <span>
 #include <utility>
 
+#include "base/geometry/box.h"
+#include "formfactor/light_on_patches.h"
 #include "radiosity/exchange_matrix.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
@@ -88,7 +93,8 @@ class Checker {
       const std::optional<FormFactors> factors = computed(optionsOf(method));
       if (!factors) continue;
       checkAccounts(method.name, *factors);
-      checkEnergy(method.name, *factors);
+      checkEnergy(method.name, *factors, materials_);
+      if (method.method == FormFactorMethod::rays) checkLamps(*factors);
       checkClosed(method.name, factors->report.closed);
       if (!factors->error.empty()) {
         checkKnown(method.name, *factors);
@@ -223,8 +229,8 @@ class Checker {
   }
 
   /// Light that is not accounted for is no more than rows state, or the solution is not usable.
-  void checkEnergy(const std::string& by, const FormFactors& f) {
-    const Solution s = solve(f, materials_, *mesh_, {}, silent_);
+  void checkEnergy(const std::string& by, const FormFactors& f, const PatchMaterials& materials) {
+    const Solution s = solve(f, materials, *mesh_, {}, silent_);
     for (const double b : s.radiosity) {
       if (!std::isfinite(b) || b < 0) return fault("radiosity " + by, "B = {}", b);
     }
@@ -240,6 +246,46 @@ class Checker {
       fault("energy " + by, "{:.3g}% of {:.4g} W is on no account, usable",
             100 * e.imbalance[0] / in, in);
     }
+  }
+
+  /// A point somewhere in the scene's box, and a sun: no more light falls on patches than they
+  /// give, and it is accounted for.
+  void checkLamps(const FormFactors& f) {
+    Box3 box;
+    for (const Vec3& v : mesh_->vertices) box.add(v);
+    std::mt19937_64 random(model_.seed);
+    std::uniform_real_distribution<double> share(0, 1);
+    const auto anyVector = [&] { return Vec3(share(random), share(random), share(random)); };
+    const double size = glm::length(box.size());
+    PointLight point;
+    point.at = box.low + anyVector() * box.size();
+    Sun sun;
+    sun.toward = anyVector() - 0.5;
+    PatchMaterials lit = materials_;
+    std::ranges::fill(lit.emission, 0.0);
+    lit.lights = {{"point", point, std::vector<double>(3, size * size)},
+                  {"sun", sun, std::vector<double>(3, 1.0)}};
+    // A box of that diagonal has at most so much shadow.
+    const double most[] = {4 * std::numbers::pi * size * size, size * size};
+    for (std::size_t l = 0; l < lit.lights.size(); ++l) {
+      const std::span<const Light> light(&lit.lights[l], 1);
+      const LightFall fall = LightOnPatches(*mesh_).aimed(light, 3, silent_);
+      double power = 0;
+      for (std::size_t i = 0; i < mesh_->size(); ++i) {
+        power += mesh_->area[i] * fall.irradiance[3 * i];
+      }
+      if (!(power >= 0 && power <= most[l] * (1 + 3 * fall.error + kClosedForm))) {
+        fault("lamp " + lit.lights[l].name, "gives {:.6g} W, {:.6g} W falls on patches", most[l],
+              power);
+      }
+    }
+    checkEnergy("lamps", f, lit);
+    if (model_.seed % 4 != 0) return;
+    const LightFall one = LightOnPatches(*mesh_).aimed(lit.lights, 3, silent_);
+    setThreads(2);
+    const LightFall two = LightOnPatches(*mesh_).aimed(lit.lights, 3, silent_);
+    setThreads(1);
+    if (one.irradiance != two.irradiance) fault("threads lamps", "other bits with two threads");
   }
 
   /// Rows are within their figures, those of the tight run allowed for.

@@ -168,7 +168,7 @@ class Reading {
     if (unit_ == light_.traits().photometric || unit_ == "lm") each = 1 / kLumensPerWatt;
     if (unit_ == "W" || unit_ == "lm") {
       light_.validate();
-      each /= *Light{light_.name, light_.kind, {1.0}}.power(0);
+      each /= Light{light_.name, light_.kind, {1.0}}.power(0).value_or(1);  // isUnit(): it has one
     }
     for (double& strength : light_.strength) strength *= each;
   }
