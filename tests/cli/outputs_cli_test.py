@@ -159,10 +159,10 @@ class Memory(CliTest):
         said = set()
         # The smallest end before the program's first line.
         for megabytes in range(100, 1000, 50):
-            limit = megabytes << 20
+            most = megabytes << 20
             run = subprocess.run([PROGRAM, "factors", "box.obj", "--patches", "60", "--method", "rays"],
                                  cwd=self.folder, capture_output=True, text=True, timeout=limit(300), check=False,
-                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (most, most)))
             self.assertNotIn("processor", run.stderr)
             if run.returncode == 1:
                 said.add(re.sub(r"[0-9.]+", "N", run.stderr))
