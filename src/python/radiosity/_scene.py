@@ -133,8 +133,11 @@ def _lights(given: Mapping[str, Any], more_lights: Any = ()) -> list:
                 for word, value in given.items() if value is not None and value != ""]
     listed = [more_lights] if isinstance(more_lights, (str, Light)) else list(more_lights)
     for light in listed:
-        require("lights", light, (str, Light), "rad.Light(...) or its text, 'point,800cd,at=1,2,2.5'")
-        word, _, rest = (f"{light._kind},{light._text}" if isinstance(light, Light) else light).partition(",")
+        if isinstance(light, Light):
+            texts_of.append((light._kind, light._text))
+            continue
+        require("lights", light, str, "rad.Light(...) or its text, 'point,800cd,at=1,2,2.5'")
+        word, _, rest = light.partition(",")
         texts_of.append((word, rest))
     return texts_of
 
