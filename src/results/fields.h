@@ -73,6 +73,9 @@ void describeLights(Archive& a, Described<Archive, std::vector<Light>>& lights, 
   if constexpr (Archive::kReading) {
     try {
       lights = lightsOf(sky, others, int(bands));
+      for (const Light& light : lights) {
+        if (!light.isAllRound()) light.validate();
+      }
     } catch (const InputError& error) {
       a.fail("lights", error.what());
     }

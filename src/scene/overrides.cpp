@@ -1,5 +1,6 @@
 // Changes materials, sides and what there is by name, after reading.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -33,6 +34,9 @@ struct Origin {
   }
 };
 
+/// Of materials.
+constexpr std::string_view kProperties[] = {"reflectance", "tint", "emission", "radiance"};
+
 Vec3 coloursOf(const Light& light) {
   return {light.strength[0], light.strength[1], light.strength[2]};
 }
@@ -50,7 +54,8 @@ class Overrides {
   /// The surfaces that `name` stands for.
   std::vector<Index> surfacesOf(const std::string& name, const Origin& origin) const;
   void replace(Light light, Up up);
-  bool isLight(const std::string& name) const { return lightNamed(name) != scene_.lights.end(); }
+  /// Whether it is a light that has the property, not a material that goes by the same name.
+  bool isOfLight(const std::string& name, const std::string& property) const;
   void setLightProperty(const std::string& name, const std::string& property,
                         const std::string& value, const Origin& origin);
   /// Whether there was one that `name` or a pattern stands for.
@@ -161,8 +166,8 @@ std::string Overrides::setTint(Material& material, const Vec3& value, const Orig
 void Overrides::setProperty(const std::string& name, const std::string& property, const Vec3& value,
                             const Origin& origin) {
   const bool emission = property == "emission" || property == "radiance";
-  if (!emission && property != "reflectance" && property != "tint") {
-    origin.fail(fmt::format("`{}` is none of reflectance, tint, emission, radiance", property));
+  if (std::ranges::find(kProperties, property) == std::end(kProperties)) {
+    origin.fail(fmt::format("`{}` is none of {}", property, fmt::join(kProperties, ", ")));
   }
   const Vec3 asked = property == "radiance" ? std::numbers::pi * value : value;
   std::map<std::string, std::set<std::string>> changes;
@@ -238,6 +243,12 @@ void Overrides::replace(Light light, Up up) {
                    describeBands(coloursOf(light)), traits.unit,
                    stands.empty() ? traits.from : stands));
   setLight(scene_.lights, std::move(light));
+}
+
+bool Overrides::isOfLight(const std::string& name, const std::string& property) const {
+  const bool of_material = std::ranges::find(kProperties, property) != std::end(kProperties);
+  return lightNamed(name) != scene_.lights.end() &&
+         (!of_material || surfacesNamed(scene_, name).empty());
 }
 
 /// The light anew from its text, with one parameter changed.
@@ -348,7 +359,7 @@ void applySet(const std::string& text, Overrides& overrides) {
   const std::string_view value_text = trimmed(std::string_view(text).substr(equals + 1));
   const std::string name = text.substr(0, dot);
   const std::string property(trimmed(text.substr(dot + 1, equals - dot - 1)));
-  if (overrides.isLight(name)) {
+  if (overrides.isOfLight(name, property)) {
     overrides.setLightProperty(name, property, std::string(value_text), origin);
     return;
   }

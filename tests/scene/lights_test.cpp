@@ -6,6 +6,7 @@
 
 #include "radiosity/light.h"
 #include "scene/lights/light_text.h"
+#include "support/scene_builder.h"
 
 namespace radiosity {
 namespace {
@@ -156,6 +157,20 @@ TEST(Lights, ADiscHasItsSize) {
   }
   EXPECT_NEAR(farthest, radiansOf(1), radiansOf(1) / 64);
   EXPECT_NEAR(glm::length(Vec2(sum)) / 4096, 0, 1e-12);
+}
+
+// Blender's lamps and materials may have one name.
+TEST(Lights, AMaterialKeepsItsPropertiesBesideALightOfItsName) {
+  test::SceneBuilder builder;
+  builder.level(builder.surface("Light"), 0, 0, 1, 1, 0);
+  Scene scene = builder.scene();
+  addLight(scene.lights, lightOf("point,1,name=Light"));
+  SceneOverrides changes;
+  changes.set = {"Light.emission=7", "Light.intensity=3", "sky.radiance=2"};
+  applyOverrides(scene, changes);
+  EXPECT_EQ(scene.materials[0].emission, Vec3(7.0));
+  EXPECT_EQ(scene.lights[1].strength, std::vector<double>(3, 3.0));
+  EXPECT_EQ(scene.lights[0].strength, std::vector<double>(3, 2.0));
 }
 
 TEST(Lights, WhatIsNoLightIsRefusedInALine) {
