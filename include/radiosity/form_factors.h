@@ -77,11 +77,13 @@ struct FormFactorOptions {
   bool near_exact = false;
   /// Rays, cut, hemicube: unknowns (patches, or clusters if there are any), ascending, whose
   /// exchange with all others is exact: those that emit (emittingUnknowns()), since all other light
-  /// comes from them. In a hemicube's row what else was seen is scaled to the rest of 1. They are
-  /// left to rays or hemicubes, and the report says so, if exact rows would take more than half as
-  /// long as these and more than some seconds, or if they have more than a million pairs. Exact:
-  /// what other unknowns get from these is good to 5% itself where it is 1% of the mean or more, if
-  /// they have a million pairs at most. Neither if onlyForSources().
+  /// comes from them. In a hemicube's row what else was seen is scaled to the rest of 1. If exact
+  /// rows would take more than half as long as the others and more than some seconds, or have more
+  /// than a million pairs, they are by shadow rays, to 1% of what a patch sees of emitters; if
+  /// these would be many times as many as other rays, or there are more than ten million pairs,
+  /// they are left to the method. The report says which. Exact: what other unknowns get from these
+  /// is good to 5% itself where it is 1% of the mean or more, if they have a million pairs at most.
+  /// Used where knowsEmitters().
   std::vector<Index> exact_rows;
   bool exact_emitters = true;    ///< false: exact_rows are estimated as all others
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
@@ -200,6 +202,11 @@ struct FormFactorOptions {
   /// Whether form factors need to be good for sources alone. If a tolerance is given, they are
   /// those for all uses.
   bool onlyForSources() const { return sources_only && !tolerance; }
+  /// Whether a method uses exact_rows: not for sources alone, where light of emitters is found
+  /// anew, but where a row has its own rays alone and so knows a lamp too badly even for these.
+  bool knowsEmitters(FormFactorMethod by) const {
+    return exact_emitters && (!onlyForSources() || by == FormFactorMethod::cut);
+  }
   /// Rays: the sky's part in the norms that errors are relative to: sqrt(sum_j F_ij^2 + (w
   /// F_sky)^2). Of sources, if no tolerance is given, it is kSourceSky: bodies that see little but
   /// the sky are lit by it, or bring little light. Otherwise 0.
@@ -400,12 +407,13 @@ struct FormFactorReport {
   std::size_t empty_rows = 0;  ///< degenerate patches: no hemicube, no elements
   std::size_t polygons = 0;    ///< planar polygons of the mesh
   /// Rays, cut, hemicube: rows that are exact, not estimated; empty if
-  /// FormFactorOptions::exact_rows asked for none.
+  /// FormFactorOptions::exact_rows asked for none, or they are by shadow rays.
   std::optional<std::size_t> exact_rows;
-  std::string simd_target;       ///< Highway's name, e.g. "AVX3", "SCALAR"
-  double seconds = 0;            ///< in total
-  double seconds_plan = 0;       ///< of these, for the plan, without seconds_prepare
-  double estimated_seconds = 0;  ///< the others, as estimated when they were planned
+  std::optional<std::size_t> shadow_rows;  ///< rows of emitters by shadow rays; empty: none
+  std::string simd_target;                 ///< Highway's name, e.g. "AVX3", "SCALAR"
+  double seconds = 0;                      ///< in total
+  double seconds_plan = 0;                 ///< of these, for the plan, without seconds_prepare
+  double estimated_seconds = 0;            ///< the others, as estimated when they were planned
   std::size_t matrix_bytes = 0;
   std::size_t estimated_bytes = 0;  ///< as estimated before the run
   double reciprocity_residual = 0;  ///< of the raw rows; 0 by construction in the exact method
@@ -430,6 +438,7 @@ struct FormFactorReport {
   static void describe(auto& list, auto& r) {
     list({"method_reason", "  because"}, r.method_reason);
     list({"exact_rows", "exact rows, of emitters"}, r.exact_rows);
+    list({"shadow_rows", "rows by shadow rays, of emitters"}, r.shadow_rows);
     list({"empty_rows", "empty rows (degenerate)"}, r.empty_rows);
     list({"seconds", "time", "s"}, r.seconds);
     list({"seconds_plan", "  of that, planning", "s"}, r.seconds_plan);

@@ -5,6 +5,7 @@
 
 #include "base/processor_clock.h"
 #include "formfactor/known_entries.h"
+#include "formfactor/rays/ray_model.h"
 
 namespace radiosity {
 namespace {
@@ -22,6 +23,11 @@ constexpr double kPreparedWork = 3000;
 constexpr double kPreparedShare = 0.25;
 /// At most this many pairs: all are held at once, in 112 bytes each.
 constexpr std::size_t kMostPairs = 1'000'000;
+/// By shadow rays: pairs, in as many bytes, and rays for each of the method's own; in any case they
+/// may be as many as take some seconds of a core.
+constexpr std::size_t kMostShadowPairs = 10'000'000;
+constexpr double kShadowsARay = 4;
+constexpr double kFewShadows = 3e7;
 
 /// The unknowns whose rows are to be exact, or their patches.
 std::vector<Index> wantedRows(const PatchMesh& mesh, const std::vector<Index>& unknowns,
@@ -38,43 +44,72 @@ std::vector<Index> wantedRows(const PatchMesh& mesh, const std::vector<Index>& u
 
 }  // namespace
 
+/// What the rows are of, and what they may take.
+struct EmitterRows::Room {
+  const PatchMesh& mesh;
+  const FormFactorOptions& options;
+  std::vector<Index> wanted;
+  RoomForExactRows most;
+  FormFactorPlan& plan;
+};
+
 KnownRows EmitterRows::compute(Progress& progress) const {
   const Stopwatch watch;
-  std::vector<KnownRow> computed;
-  if (rows) computed = rows->compute(progress);
-  return {std::move(computed), seconds + watch.seconds()};
+  std::vector<KnownRow> computed =
+      areExact() ? exact_->compute(progress) : by_shadows_->compute(progress);
+  return {std::move(computed), areExact(), seconds_ + watch.seconds()};
 }
 
-std::unique_ptr<const EmitterRows> planEmitterRows(const PatchMesh& mesh,
-                                                   const FormFactorOptions& options,
-                                                   const PreparedMethod& method,
-                                                   FormFactorPlan& plan, Progress& progress) {
-  const std::optional<RoomForExactRows> room = method.roomForExactRows();
-  if (!room) return nullptr;
+std::unique_ptr<const EmitterRows> EmitterRows::planned(const PatchMesh& mesh,
+                                                        const FormFactorOptions& options,
+                                                        const PreparedMethod& method,
+                                                        FormFactorPlan& plan, Progress& progress) {
+  const std::optional<RoomForExactRows> most = method.roomForExactRows();
+  if (!most || options.exact_rows.empty()) return nullptr;
   const bool of_unknowns = traitsOf(plan.method).counts_unknowns;
-  const std::vector<Index> wanted = wantedRows(mesh, options.exact_rows, of_unknowns);
-  const std::size_t pairs = wanted.size() * (of_unknowns ? mesh.unknowns() : mesh.size());
-  const double most = std::max(kLittleWork, room->work);
-  if (wanted.empty() || pairs > kMostPairs) return nullptr;
-  if (kPreparedWork * double(mesh.size()) > kPreparedShare * most) return nullptr;
   const Stopwatch watch;
-  auto emitters = std::make_unique<EmitterRows>();
-  if (!of_unknowns && mesh.clusters) emitters->patches.emplace(mesh).clusters.reset();
+  auto rows = std::make_unique<EmitterRows>();
+  if (!of_unknowns && mesh.clusters) rows->patches_.emplace(mesh).clusters.reset();
+  const Room room{rows->patches_ ? *rows->patches_ : mesh, options,
+                  wantedRows(mesh, options.exact_rows, of_unknowns), *most, plan};
+  const bool fits = rows->planExact(room, progress) || rows->planShadows(room, progress);
+  rows->seconds_ = watch.seconds();
+  return fits ? std::move(rows) : nullptr;
+}
+
+bool EmitterRows::planExact(const Room& room, Progress& progress) {
+  const std::size_t pairs = room.wanted.size() * room.mesh.unknowns();
+  const double most = std::max(kLittleWork, room.most.work);
+  if (pairs > kMostPairs) return false;
+  if (kPreparedWork * double(room.mesh.size()) > kPreparedShare * most) return false;
   progress.begin("preparing", ExactScene::kSteps);
-  LeadingRows& rows = emitters->rows.emplace(emitters->patches ? *emitters->patches : mesh, wanted,
-                                             options, progress);
+  LeadingRows& rows = exact_.emplace(room.mesh, room.wanted, room.options, progress);
   progress.end();
-  emitters->seconds = watch.seconds();
   RowSample sample = rows.sample(progress);
   for (const double tolerance : kTolerances) {
-    rows.setTolerance(std::min(options.toleranceOf(plan.method), tolerance));
+    rows.setTolerance(std::min(room.options.toleranceOf(room.plan.method), tolerance));
     if (rows.work(sample) > most) continue;
-    plan.seconds += rows.seconds(sample, progress);
-    plan.bytes = std::max(plan.bytes, room->bytes + rows.bytes());
-    plan.bytes += KnownEntries::bytes(std::min(double(pairs), sample.unoccluded + sample.occluded));
-    return emitters;
+    room.plan.seconds += rows.seconds(sample, progress);
+    room.plan.bytes =
+        std::max(room.plan.bytes, room.most.bytes + rows.bytes()) +
+        KnownEntries::bytes(std::min(double(pairs), sample.unoccluded + sample.occluded));
+    return true;
   }
-  return nullptr;
+  exact_.reset();
+  return false;
+}
+
+bool EmitterRows::planShadows(const Room& room, Progress& progress) {
+  progress.begin("preparing", 1);
+  const ShadowRows& rows = by_shadows_.emplace(room.mesh, room.wanted, room.options.seed);
+  progress.end();
+  const double most = std::max(kFewShadows, kShadowsARay * room.most.work / kExactWorkARay);
+  const std::size_t pairs = room.wanted.size() * room.mesh.unknowns();
+  if (pairs > kMostShadowPairs || rows.rays() > most) return false;
+  room.plan.seconds += rows.seconds(progress);
+  room.plan.bytes = std::max(room.plan.bytes, room.most.bytes + rows.bytes()) +
+                    KnownEntries::bytes(double(pairs));
+  return true;
 }
 
 }  // namespace radiosity

@@ -38,15 +38,18 @@ void requireUnknowns(const std::vector<Index>& rows, std::size_t unknowns) {
   }
 }
 
-void noteRowsLeftOut(const FormFactorPlan& plan, FormFactorReport& report) {
+void noteRowsThatAreNotExact(const FormFactorPlan& plan, FormFactorReport& report) {
   const FormFactorPlan::Prepared& prepared = *plan.prepared;
   const std::size_t wanted = prepared.options.exact_rows.size();
-  if (wanted == 0 || prepared.emitters || !prepared.method->roomForExactRows()) return;
+  if (wanted == 0 || !prepared.method->roomForExactRows()) return;
+  if (prepared.emitters && prepared.emitters->areExact()) return;
+  const std::string way =
+      prepared.emitters ? "shadow rays"
+                        : fmt::format("the method {}, as all others", traitsOf(plan.method).word);
   report.notes.push_back(
-      {Severity::info, fmt::format("rows of the {} {} that {} are by the method {}, as all others: "
-                                   "exact ones would take too long",
-                                   countText(wanted), wanted == 1 ? "unknown" : "unknowns",
-                                   wanted == 1 ? "emits" : "emit", traitsOf(plan.method).word)});
+      {Severity::info,
+       fmt::format("rows of the {} {} by {}: exact ones would take too long", countText(wanted),
+                   wanted == 1 ? "unknown that emits are" : "unknowns that emit are", way)});
 }
 
 }  // namespace
@@ -87,7 +90,6 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   requireUnknowns(options.exact_rows, mesh->unknowns());
   const Stopwatch watch;
   FormFactorOptions used = options;
-  if (used.onlyForSources() || !used.exact_emitters) used.exact_rows.clear();
   Chosen chosen;
   if (used.method == FormFactorMethod::automatic) {
     chosen = chooseMethod(*mesh, used, progress);
@@ -96,7 +98,8 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
     chosen.plan = chosen.method->plan(progress);
   }
   auto& [method, plan] = chosen;
-  auto emitters = planEmitterRows(*mesh, used, *method, plan, progress);
+  if (!used.knowsEmitters(plan.method)) used.exact_rows.clear();
+  auto emitters = EmitterRows::planned(*mesh, used, *method, plan, progress);
   plan.prepared = std::make_shared<FormFactorPlan::Prepared>(FormFactorPlan::Prepared{
       std::move(mesh), std::move(used), std::move(method), std::move(emitters), watch.seconds()});
   return std::move(plan);
@@ -142,7 +145,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
     result = method.compute(std::move(known), progress, journal, processes);
   }
   FormFactorReport& report = result.report;
-  noteRowsLeftOut(plan, report);
+  noteRowsThatAreNotExact(plan, report);
   if (result.seeNothing()) {
     if (std::optional<Note> note = nothingSeenNote(*prepared.mesh)) {
       report.notes.push_back(*std::move(note));
@@ -151,7 +154,7 @@ FormFactors computeFormFactors(const FormFactorPlan& plan, Progress& progress, R
   report.method_reason = plan.reason;
   // What was prepared for the method is part of its work.
   const double preparing =
-      method.secondsPreparing() + (prepared.emitters ? prepared.emitters->seconds : 0.0);
+      method.secondsPreparing() + (prepared.emitters ? prepared.emitters->secondsPreparing() : 0.0);
   report.seconds_plan = prepared.seconds - preparing;
   report.estimated_seconds = preparing + plan.seconds;
   report.matrix_bytes = result.matrix->bytes();

@@ -31,8 +31,9 @@ RowMemory PreparedMethod::memory(const Processes* processes) const {
 
 FormFactors PreparedMethod::compute(KnownRows known, Progress& progress, RowJournal* journal,
                                     Processes* processes) const {
-  std::optional<std::size_t> exact_rows;
-  if (roomForExactRows() && !options_.exact_rows.empty()) exact_rows = known.rows.size();
+  std::optional<std::size_t> known_rows;
+  if (roomForExactRows() && !options_.exact_rows.empty()) known_rows = known.rows.size();
+  const bool are_exact = known.are_exact;
   const RowMemory held = memory(processes);
   const std::size_t rows = traits_.counts_unknowns ? mesh_.unknowns() : mesh_.size();
   FormFactors result =
@@ -40,7 +41,7 @@ FormFactors PreparedMethod::compute(KnownRows known, Progress& progress, RowJour
   result.method = traits_.method;
   result.report.polygons = mesh_.polygons.size();
   result.report.estimated_bytes = held.bytes;
-  result.report.exact_rows = exact_rows;
+  (are_exact ? result.report.exact_rows : result.report.shadow_rows) = known_rows;
   if (mesh_.clusters && !traits_.counts_unknowns) return clusterFactors(result, mesh_, progress);
   return result;
 }

@@ -16,10 +16,11 @@
 
 namespace radiosity {
 
-/// Exact rows, of those that emit, beside which a method makes all others.
+/// Rows of those that emit, beside which a method makes all others.
 struct KnownRows {
   std::vector<KnownRow> rows;
-  double seconds = 0;  ///< for preparing and making them
+  bool are_exact = true;  ///< or by shadow rays
+  double seconds = 0;     ///< for preparing and making them
 };
 
 /// What exact rows may take beside a method that can do with them.

@@ -25,8 +25,10 @@ constexpr std::array kEntries{MethodEntry{FormFactorMethod::exact, &prepareExact
 
 std::unique_ptr<PreparedMethod> prepareMethod(FormFactorMethod method, const PatchMesh& mesh,
                                               const FormFactorOptions& options) {
+  FormFactorOptions used = options;
+  if (!used.knowsEmitters(method)) used.exact_rows.clear();
   for (const MethodEntry& entry : kEntries) {
-    if (entry.method == method) return entry.prepare(mesh, options);
+    if (entry.method == method) return entry.prepare(mesh, used);
   }
   throw std::logic_error("no method that computes form factors");
 }

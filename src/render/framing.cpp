@@ -217,9 +217,9 @@ Glimpse look(const LitMesh& scene, const Camera& camera, double aspect, double d
   std::vector<double> seen(mesh.size(), 0.0);
   Glimpse glimpse;
   for (std::size_t k = 0; k < trial.end.size(); ++k) {
-    const auto& [patch, at] = trial.end[k];
+    const std::uint32_t patch = trial.end[k].patch;
     if (patch == RayEnd::kSky) continue;
-    const double depth = glm::dot(at - view.eye, view.forward);
+    const double depth = glm::dot(trial.end[k].at - view.eye, view.forward);
     glimpse.near += depth < 0.04 * diagonal;
     if (patch >= mesh.size()) continue;  // a back
     const double along = glm::dot(trial.ray[k], view.forward);

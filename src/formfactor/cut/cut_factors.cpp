@@ -88,7 +88,7 @@ Cut::Cost Cut::foresee(Progress& progress) {
   progress.advance();
   progress.end();
   progress.begin("planning", 1);
-  plan_ = planCuts(*scene_, tree, tolerance(), options().seed, progress);
+  plan_ = planCuts(mesh(), *scene_, tree, options(), progress);
   progress.end();
   const std::size_t n = scene_->size();
   Cost cost;

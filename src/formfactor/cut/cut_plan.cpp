@@ -14,167 +14,31 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/cut/row_cutter.h"
+#include "formfactor/cut/trial_lights.h"
 #include "formfactor/rays/ray_model.h"
 #include "formfactor/rays/ray_rounds.h"
 
 namespace radiosity {
 namespace {
 
-constexpr int kTrials = 4;
-/// Of so many lights the kTrials are tried that reach most of the area: one between two faces that
-/// nearly touch says nothing of the rest.
-constexpr std::size_t kCandidates = 16;
-constexpr std::size_t kMostRows = 512;
 constexpr std::uint32_t kFirstRays = 128;
 /// A step gives rows at most this many times the rays that they have.
 constexpr double kMostGrowth = 16;
 /// Shares of the tolerance for rays and for cutting: together they are 1.
 constexpr double kNoiseShare = 0.8;
 constexpr double kBiasShare = 0.6;
-constexpr std::array<double, 7> kOpenings{1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125};
-/// A shadow ray that comes this near to its lamp has reached it.
-constexpr float kReached = 1 - 1e-4F;
-
-/// A number from 0 to 1.
-double uniform(std::uint64_t seed, std::uint64_t number) {
-  return double(mixed(mixed(seed) ^ number) >> 11U) * 0x1p-53;
-}
-
-/// A sun, or a lamp in mid-air.
-struct Trial {
-  bool is_sun = false;
-  glm::vec3 at{0};  ///< the direction to the sun, or the place of the lamp
-  float size = 0;   ///< of a lamp: within this distance it is hardly brighter
-};
-
-glm::vec3 placeOf(const PatchTree::Patch& patch) { return {patch.at[0], patch.at[1], patch.at[2]}; }
-
-/// Of a bent cluster the mean is shorter.
-glm::vec3 normalOf(const PatchTree::Patch& patch) {
-  const glm::vec3 mean(patch.at[3], patch.at[4], patch.at[5]);
-  const float length = glm::length(mean);
-  return length > 0 ? mean / length : glm::vec3(0, 0, 1);
-}
-
-/// The lengths of some rays, infinite where they meet nothing.
-void traceLengths(const EmbreeScene& embree, std::span<const glm::vec3> from,
-                  std::span<const glm::vec3> along, std::span<float> lengths) {
-  RTCRayHit16 packet;
-  for (std::size_t begin = 0; begin < from.size(); begin += kRayLanes) {
-    const int lanes = int(std::min<std::size_t>(kRayLanes, from.size() - begin));
-    initPacket(packet);
-    for (int k = 0; k < lanes; ++k) {
-      setRay(packet, k, from[begin + std::size_t(k)], along[begin + std::size_t(k)]);
-    }
-    embree.trace(packet, lanes, Coherence::incoherent);
-    for (int k = 0; k < lanes; ++k) lengths[begin + std::size_t(k)] = packet.ray.tfar[k];
-  }
-}
-
-/// A lamp half-way along a ray that leaves some patch, or a sun where that meets nothing.
-Trial makeTrial(const RayScene& scene, const PatchTree& tree, std::uint64_t seed) {
-  const auto patches = tree.patches();
-  const auto chosen = std::size_t(uniform(seed, 0) * double(patches.size()));
-  const PatchTree::Patch& patch = patches[std::min(chosen, patches.size() - 1)];
-  const glm::vec3 z = normalOf(patch);
-  const glm::vec3 aside = std::abs(z.x) < 0.5F ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
-  const glm::vec3 x = glm::normalize(glm::cross(aside, z));
-  const auto radius = float(std::sqrt(uniform(seed, 1)));
-  const auto turn = float(2 * std::numbers::pi * uniform(seed, 2));
-  const glm::vec3 along = radius * std::cos(turn) * x + radius * std::sin(turn) * glm::cross(z, x) +
-                          std::sqrt(std::max(0.0F, 1 - radius * radius)) * z;
-  const glm::vec3 from = placeOf(patch) + kRayLift * z;
-  float length = 0;
-  traceLengths(scene.caster().embree(), {&from, 1}, {&along, 1}, {&length, 1});
-  if (std::isinf(length)) return {true, along, 0};
-  return {false, from + 0.5F * length * along, 0.5F * length};
-}
-
-/// What a trial gives to some patches, with its shadows.
-void shine(const RayScene& scene, std::span<const PatchTree::Patch> patches, const Trial& trial,
-           std::span<double> light) {
-  std::vector<glm::vec3> from(patches.size());
-  std::vector<glm::vec3> along(patches.size());
-  std::vector<float> distance(patches.size());
-  std::vector<float> lengths(patches.size());
-  for (std::size_t k = 0; k < patches.size(); ++k) {
-    from[k] = placeOf(patches[k]) + kRayLift * normalOf(patches[k]);
-    const glm::vec3 to = trial.is_sun ? trial.at : trial.at - from[k];
-    distance[k] = glm::length(to);
-    along[k] = distance[k] > 0 ? to / distance[k] : normalOf(patches[k]);
-  }
-  traceLengths(scene.caster().embree(), from, along, lengths);
-  for (std::size_t k = 0; k < patches.size(); ++k) {
-    const float reach =
-        trial.is_sun ? std::numeric_limits<float>::infinity() : kReached * distance[k];
-    const float cosine = glm::dot(along[k], normalOf(patches[k]));
-    light[k] = 0;
-    if (cosine <= 0 || lengths[k] < reach) continue;
-    const double square = double(trial.size) * trial.size;
-    const double spread =
-        trial.is_sun ? 1.0 : square / (square + double(distance[k]) * distance[k]);
-    light[k] = cosine * spread;
-  }
-}
-
-/// About kMostRows patches of a tree.
-std::vector<std::size_t> someOf(const PatchTree& tree) {
-  const std::size_t n = tree.patches().size();
-  std::vector<std::size_t> places(std::min(n, kMostRows));
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    places[k] = (2 * k + 1) * n / (2 * places.size());
-  }
-  return places;
-}
-
-std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& tree,
-                                        std::uint64_t seed) {
-  std::vector<PatchTree::Patch> some;
-  for (const std::size_t place : someOf(tree)) some.push_back(tree.patches()[place]);
-  std::vector<double> light(some.size());
-  std::vector<std::pair<double, Trial>> candidates;
-  for (std::size_t c = 0; c < kCandidates; ++c) {
-    const Trial trial = makeTrial(scene, tree, mixed(seed + c));
-    shine(scene, some, trial, light);
-    double lit = 0;
-    for (std::size_t k = 0; k < some.size(); ++k) lit += light[k] > 0 ? some[k].area : 0.0;
-    candidates.emplace_back(lit, trial);
-  }
-  std::ranges::stable_sort(candidates, std::ranges::greater(), &std::pair<double, Trial>::first);
-  std::array<Trial, kTrials> trials;
-  for (std::size_t t = 0; t < trials.size(); ++t) trials[t] = candidates[t].second;
-  return trials;
-}
-
-/// What all trials give to all unknowns, kTrials values each.
-std::vector<double> trialLight(const RayScene& scene, const PatchTree& tree, std::uint64_t seed,
-                               Progress& progress) {
-  constexpr std::size_t kPatches = 4 * kRayLanes;
-  const auto patches = tree.patches();
-  std::vector<double> light(scene.size() * kTrials, 0.0);
-  const std::array<Trial, kTrials> trials = chooseTrials(scene, tree, seed);
-  for (std::size_t t = 0; t < kTrials; ++t) {
-    const Trial& trial = trials[t];
-    parallelFor(patches.size() / kPatches + 1, 1, [&](std::size_t part) {
-      if (progress.cancelled()) return;
-      const std::size_t begin = std::min(part * kPatches, patches.size());
-      const auto some = patches.subspan(begin, std::min(kPatches, patches.size() - begin));
-      std::array<double, kPatches> of{};
-      const FlushDenormals flush;
-      shine(scene, some, trial, std::span(of).first(some.size()));
-      for (std::size_t k = 0; k < some.size(); ++k) light[some[k].patch * kTrials + t] = of[k];
-    });
-    progress.check();
-  }
-  return light;
-}
-
+/// The last cuts nothing: each patch that was hit has an entry.
+constexpr std::array<double, 10> kOpenings{1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125, 0.06, 0.03, 0};
+/// Nodes are opened beyond what the tolerance asks for while that takes no more than this many
+/// times the entries: where each ray of a row ends elsewhere, cutting saves next to nothing.
+constexpr double kFewEntries = 1.25;
 using OfTrials = std::array<double, kTrials>;
 
 struct SampleRow {
   std::size_t place = 0;
   double area = 0;
   RayRow row;
+  OfTrials direct{};      ///< irradiance that the row does not bring
   OfTrials whole{};       ///< irradiance by its rays
   OfTrials difference{};  ///< half of that between the replicates
   OfTrials off{};         ///< by which the cut differs
@@ -204,7 +68,8 @@ double relativeError(std::span<const SampleRow> rows, OfTrials SampleRow::*off) 
     double norm = 0;
     for (const SampleRow& row : rows) {
       squares += row.area * (row.*off)[t] * (row.*off)[t];
-      norm += row.area * row.whole[t] * row.whole[t];
+      const double all = row.direct[t] + row.whole[t];
+      norm += row.area * all * all;
     }
     if (!(norm > 0)) continue;
     ++lit;
@@ -215,14 +80,16 @@ double relativeError(std::span<const SampleRow> rows, OfTrials SampleRow::*off) 
 
 class Trials {
  public:
-  Trials(const RayScene& scene, const PatchTree& tree, std::uint64_t seed, Progress& progress)
-      : scene_(scene), tree_(tree), progress_(progress) {
+  Trials(const RayScene& scene, const PatchTree& tree, TrialLights lights, Progress& progress)
+      : scene_(scene), tree_(tree), progress_(progress), lights_(std::move(lights)) {
     for (const std::size_t place : someOf(tree)) {
-      rows_.emplace_back();
-      rows_.back().place = place;
-      rows_.back().area = tree.patches()[place].area;
+      SampleRow& sample = rows_.emplace_back();
+      const PatchTree::Patch& patch = tree.patches()[place];
+      sample.place = place;
+      sample.area = patch.area;
+      if (lights_.direct.empty()) continue;
+      std::copy_n(&lights_.direct[patch.patch * kTrials], kTrials, sample.direct.begin());
     }
-    light_ = trialLight(scene, tree, seed, progress);
   }
 
   CutPlan plan(double tolerance) {
@@ -233,12 +100,8 @@ class Trials {
       const double growth = std::clamp(wanted, 1.25, kMostGrowth);
       castAll(std::min(roundedRays(plan.rays * growth), RowCutter::kMostRays), plan);
     }
-    fields_ = nodeFields(tree_, light_, kTrials);
-    for (const double opening : kOpenings) {
-      plan.opening = opening;
-      cutAll(plan);
-      if (plan.bias <= kBiasShare * tolerance) break;
-    }
+    fields_ = nodeFields(tree_, lights_.radiosity, kTrials);
+    openNodes(tolerance, plan);
     plan.seconds = taken_.ratio() * taken_.processor / rays_taken_ * plan.rays;
     plan.is_lit = std::ranges::any_of(rows_, [](const SampleRow& row) {
       return std::ranges::any_of(row.whole, [](double h) { return h > 0; });
@@ -247,6 +110,22 @@ class Trials {
   }
 
  private:
+  void openNodes(double tolerance, CutPlan& plan) {
+    double most_entries = std::numeric_limits<double>::infinity();
+    for (const double opening : kOpenings) {
+      const CutPlan before = plan;
+      plan.opening = opening;
+      cutAll(plan);
+      if (plan.entries > most_entries) {
+        plan = before;
+        return;
+      }
+      if (plan.bias <= kBiasShare * tolerance) {
+        most_entries = std::min(most_entries, kFewEntries * plan.entries);
+      }
+    }
+  }
+
   void castAll(std::uint32_t rays, CutPlan& plan) {
     std::vector<BothClocks> taken(rows_.size());
     const std::uint32_t before = plan.rays;
@@ -256,7 +135,7 @@ class Trials {
       scene_.cast(scene_.position()[tree_.patches()[sample.place].patch], rays, sample.row,
                   progress_);
       taken[k] = watches.elapsed();
-      if (!progress_.cancelled()) measureRays(scene_, light_, sample);
+      if (!progress_.cancelled()) measureRays(scene_, lights_.radiosity, sample);
     });
     progress_.check();
     for (const BothClocks& of_row : taken) taken_ += of_row;
@@ -289,8 +168,8 @@ class Trials {
   const RayScene& scene_;
   const PatchTree& tree_;
   Progress& progress_;
+  TrialLights lights_;
   std::vector<SampleRow> rows_;
-  std::vector<double> light_;
   std::vector<NodeField> fields_;
   BothClocks taken_;
   double rays_taken_ = 0;
@@ -298,10 +177,12 @@ class Trials {
 
 }  // namespace
 
-CutPlan planCuts(const RayScene& scene, const PatchTree& tree, double tolerance, std::uint64_t seed,
-                 Progress& progress) {
+CutPlan planCuts(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,
+                 const FormFactorOptions& options, Progress& progress) {
   if (tree.patches().empty()) return {};
-  return Trials(scene, tree, seed, progress).plan(tolerance);
+  TrialLights lights = trialLights(mesh, scene, tree, options.exact_rows, options.seed, progress);
+  return Trials(scene, tree, std::move(lights), progress)
+      .plan(options.toleranceOf(FormFactorMethod::cut));
 }
 
 }  // namespace radiosity

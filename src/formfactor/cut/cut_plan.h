@@ -7,6 +7,7 @@
 
 #include "formfactor/rays/ray_scene.h"
 #include "matrix/patch_tree.h"
+#include "radiosity/form_factors.h"
 
 namespace radiosity {
 
@@ -23,8 +24,8 @@ struct CutPlan {
   bool is_lit = false;  ///< whether rows have seen anything that the trial lights shine on
 };
 
-/// `tolerance`: of irradiance. Throws Cancelled.
-CutPlan planCuts(const RayScene& scene, const PatchTree& tree, double tolerance, std::uint64_t seed,
-                 Progress& progress);
+/// For the tolerance of irradiance that the options have. Throws Cancelled.
+CutPlan planCuts(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,
+                 const FormFactorOptions& options, Progress& progress);
 
 }  // namespace radiosity

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/geometry/box.h"
+#include "formfactor/rays/patch_points.h"
 
 namespace radiosity {
 namespace {
@@ -21,10 +22,6 @@ static_assert(kPoints.back() <= kMostPoints);
 /// Of all light on a patch.
 constexpr double kPatchTolerance = 2.5e-3;
 constexpr std::size_t kHalves = 2;
-
-/// The share of a patch on one side of a straight edge, by n points of two nets, is off by
-/// .42 n^-3/4 of it (root mean square of 300 edges across a square, n from 128 to 8,192).
-double edgeError(std::size_t points) { return 0.42 * std::pow(double(points), -0.75); }
 
 double twiceArea(const PatchMesh& mesh, const std::array<Index, 3>& piece) {
   const Vec3& corner = mesh.vertices[piece[0]];
@@ -69,45 +66,6 @@ struct AimedLight::Ways {
 struct AimedLight::Found {
   double lit = 0;
   double whole = 0;
-};
-
-/// Places of a patch alike by area, each with two numbers that choose a place of a wide light.
-class AimedLight::Points {
- public:
-  Points(const PatchMesh& mesh, std::size_t patch, const SobolPoints& sobol, std::size_t count,
-         std::uint64_t seed)
-      : normal(mesh.normal[patch]), own(&mesh.polygon[patch], 1) {
-    std::array<std::vector<float>, kDimensions> numbers;
-    PointArrays out{};
-    for (std::size_t d = 0; d < kDimensions; ++d) {
-      numbers[d].resize(count);
-      out[d] = numbers[d].data();
-    }
-    sobol.points(0, count, seed, out);
-    const auto pieces = piecesOf(mesh, patch);
-    std::vector<double> end;
-    for (const auto& piece : pieces) {
-      end.push_back((end.empty() ? 0.0 : end.back()) + twiceArea(mesh, piece));
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      const double x = double(numbers[0][k]) * end.back();
-      auto piece = std::size_t(std::ranges::upper_bound(end, x) - end.begin());
-      piece = std::min(piece, end.size() - 1);
-      const double begin = piece == 0 ? 0.0 : end[piece - 1];
-      // A triangle's points alike by area: the square root of u from its first corner.
-      const double u = std::sqrt(std::clamp((x - begin) / (end[piece] - begin), 0.0, 1.0));
-      const auto v = double(numbers[1][k]);
-      const auto& [a, b, c] = pieces[piece];
-      at.push_back((1 - u) * mesh.vertices[a] + u * (1 - v) * mesh.vertices[b] +
-                   u * v * mesh.vertices[c]);
-      of_light.push_back({numbers[2][k], numbers[3][k]});
-    }
-  }
-
-  std::vector<Vec3> at;
-  std::vector<std::array<float, 2>> of_light;
-  Vec3 normal;
-  std::span<const Index> own;
 };
 
 AimedLight::AimedLight(const PatchMesh& mesh, const PointRays& rays, std::span<const Light> lights)
@@ -198,7 +156,7 @@ std::optional<double> AimedLight::unobstructed(const Light& light, std::size_t p
   return area > 0 ? sum / area : 0.0;
 }
 
-AimedLight::Found AimedLight::atPoints(const Light& light, const Points& points) const {
+AimedLight::Found AimedLight::atPoints(const Light& light, const PatchPoints& points) const {
   thread_local std::vector<Vec3> from;
   thread_local std::vector<Vec3> to;
   thread_local std::vector<double> share;
@@ -218,7 +176,7 @@ AimedLight::Found AimedLight::atPoints(const Light& light, const Points& points)
     found.whole += here;
   }
   seen.resize(to.size());
-  rays_.see(from, points.normal, points.own, to, seen);
+  rays_.see(from, points.normal, points.own, to, {}, seen);
   for (std::size_t k = 0; k < to.size(); ++k) {
     if (seen[k] != 0) found.lit += share[k];
   }
@@ -227,8 +185,8 @@ AimedLight::Found AimedLight::atPoints(const Light& light, const Points& points)
 
 /// Points tell what is hidden; how much there is they tell only without a closed form. Two halves
 /// may agree by chance: an edge is taken to be off by what edges are.
-AimedLight::Share AimedLight::overPatch(const Light& light, std::size_t patch, const Points& first,
-                                        const Points& second) const {
+AimedLight::Share AimedLight::overPatch(const Light& light, std::size_t patch,
+                                        const PatchPoints& first, const PatchPoints& second) const {
   const Found a = atPoints(light, first);
   const Found b = atPoints(light, second);
   const double lit = (a.lit + b.lit) / 2;
@@ -246,8 +204,8 @@ void AimedLight::overPatch(std::size_t patch, std::uint64_t seed, std::span<Shar
   if (mesh_.polygon[patch] == kNone || !(mesh_.area[patch] > 0)) return;
   double all = 0;
   for (const std::size_t count : kPoints) {
-    std::optional<Points> first;
-    std::optional<Points> second;
+    std::optional<PatchPoints> first;
+    std::optional<PatchPoints> second;
     for (std::size_t l = 0; l < lights_.size(); ++l) {
       const double strength = over(lights_[l].strength);
       const bool known = all > 0 && !(shares[l].error * strength > kPatchTolerance * all);

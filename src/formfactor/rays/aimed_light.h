@@ -12,6 +12,8 @@
 
 namespace radiosity {
 
+struct PatchPoints;
+
 /// All calls but the constructor are thread-safe.
 class AimedLight {
  public:
@@ -38,13 +40,12 @@ class AimedLight {
  private:
   struct Ways;
   struct Found;
-  class Points;
 
   Vec3 endOf(const Vec3& from, const LightRay& ray) const;
   double addWide(const Light& light, const RaySource& at, std::span<double> irradiance) const;
-  Found atPoints(const Light& light, const Points& points) const;
-  Share overPatch(const Light& light, std::size_t patch, const Points& first,
-                  const Points& second) const;
+  Found atPoints(const Light& light, const PatchPoints& points) const;
+  Share overPatch(const Light& light, std::size_t patch, const PatchPoints& first,
+                  const PatchPoints& second) const;
   std::optional<double> unobstructed(const Light& light, std::size_t patch) const;
 
   const PatchMesh& mesh_;

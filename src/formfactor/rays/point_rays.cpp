@@ -103,8 +103,8 @@ RayEnd PointRays::endOf(const RTCRayHit16& packet, int k, std::span<const Index>
   if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return end;
   const glm::vec3 along(packet.ray.dir_x[k], packet.ray.dir_y[k], packet.ray.dir_z[k]);
   const EmbreeScene::End hit = embree_.endAt(packet, k, kNone);
-  const Index polygon = targets_.polygonOf(hit.triangle);
-  if (std::find(own.begin(), own.end(), polygon) != own.end()) {
+  end.polygon = targets_.polygonOf(hit.triangle);
+  if (std::find(own.begin(), own.end(), end.polygon) != own.end()) {
     end.patch = RayEnd::kOwn;
     return end;
   }
@@ -192,8 +192,9 @@ void PointRays::see(const RaySource& from, std::span<const Vec3> to, std::span<c
 }
 
 void PointRays::see(std::span<const Vec3> from, const Vec3& normal, std::span<const Index> own,
-                    std::span<const Vec3> to, std::span<std::uint8_t> seen) const {
-  seeFrom([&](std::size_t ray) { return lifted(from[ray], normal); }, own, to, {}, seen);
+                    std::span<const Vec3> to, std::span<const Index> there,
+                    std::span<std::uint8_t> seen) const {
+  seeFrom([&](std::size_t ray) { return lifted(from[ray], normal); }, own, to, there, seen);
 }
 
 }  // namespace radiosity

@@ -20,7 +20,8 @@ struct RayEnd {
   static constexpr std::uint32_t kBlack = kNone - 2;  ///< a back without patches
   static constexpr std::uint32_t kOwn = kNone - 3;    ///< a polygon that it left from: no true hit
   std::uint32_t patch = kSky;
-  Vec3 at{0.0};  ///< metres; of a hit
+  Index polygon = kNone;  ///< that was hit
+  Vec3 at{0.0};           ///< metres; of a hit
 };
 
 /// A point of a surface; `own`: the polygons that it lies on, which no ray from it ends on.
@@ -79,9 +80,11 @@ class PointRays {
   /// the source's own polygons do not count.
   void see(const RaySource& from, std::span<const Vec3> to, std::span<const Index> there,
            std::span<std::uint8_t> seen) const;
-  /// The same between `from[k]`, points of one plane, and `to[k]`, in the open.
+  /// The same between `from[k]`, points of one plane, and `to[k]`; without `there` these are in the
+  /// open.
   void see(std::span<const Vec3> from, const Vec3& normal, std::span<const Index> own,
-           std::span<const Vec3> to, std::span<std::uint8_t> seen) const;
+           std::span<const Vec3> to, std::span<const Index> there,
+           std::span<std::uint8_t> seen) const;
 
  private:
   glm::vec3 lifted(const Vec3& from, const Vec3& normal) const;

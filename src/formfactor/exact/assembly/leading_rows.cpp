@@ -8,9 +8,9 @@
 #include "formfactor/exact/assembly/row_assembly.h"
 #include "formfactor/exact/assembly/task_blocks.h"
 #include "formfactor/exact/error_model.h"
+#include "formfactor/unknown_rows.h"
 #include "matrix/run_row.h"
 #include "matrix/uncertain_row.h"
-#include "mesh/clusters/cluster_means.h"
 
 namespace radiosity {
 
@@ -59,74 +59,6 @@ void readErrors(const UncertainEntries& uncertain, std::size_t k, std::vector<do
           });
 }
 
-/// The rows of some unknowns, summed over patches.
-class UnknownRows {
- public:
-  UnknownRows(const PatchMesh& mesh, std::span<const Index> wanted)
-      : mesh_(mesh),
-        which_(mesh.unknowns(), kNone),
-        exchange_(wanted.size() * mesh.unknowns(), 0.0),
-        squares_(exchange_.size(), 0.0),
-        rows_(wanted.size()),
-        area_(unknownAreas(mesh)) {
-    for (Index w = 0; w < wanted.size(); ++w) {
-      which_[wanted[w]] = w;
-      rows_[w].unknown = wanted[w];
-    }
-  }
-
-  /// Adds a pair of patches, each pair once.
-  void add(Index a, Index b, double exchange, double error) {
-    addFrom(mesh_.unknownOf(a), mesh_.unknownOf(b), exchange, error);
-    addFrom(mesh_.unknownOf(b), mesh_.unknownOf(a), exchange, error);
-  }
-
-  /// Adds the backs that a patch sees.
-  void addBacks(Index patch, std::span<const SeenBack> seen) {
-    const Index unknown = mesh_.unknownOf(patch);
-    if (which_[unknown] == kNone) return;
-    std::vector<SeenBack>& backs = rows_[which_[unknown]].backs;
-    for (const auto& [surface, of_patch] : seen) {
-      const double share = of_patch * mesh_.area[patch] / area_[unknown];
-      const auto same =
-          std::find_if(backs.begin(), backs.end(),
-                       [&, s = surface](const SeenBack& back) { return back.surface == s; });
-      if (same == backs.end()) {
-        backs.push_back({surface, share});
-      } else {
-        same->share += share;
-      }
-    }
-  }
-
-  std::vector<KnownRow> take() {
-    const std::size_t unknowns = mesh_.unknowns();
-    for (std::size_t w = 0; w < rows_.size(); ++w) {
-      for (Index u = 0; u < unknowns; ++u) {
-        const double exchange = exchange_[w * unknowns + u];
-        if (!(exchange > 0)) continue;
-        rows_[w].entries.push_back({u, exchange, std::sqrt(squares_[w * unknowns + u])});
-      }
-    }
-    return std::move(rows_);
-  }
-
- private:
-  void addFrom(Index from, Index to, double exchange, double error) {
-    if (which_[from] == kNone) return;
-    const std::size_t k = which_[from] * mesh_.unknowns() + to;
-    exchange_[k] += exchange;
-    squares_[k] += error * error;
-  }
-
-  const PatchMesh& mesh_;
-  std::vector<Index> which_;      ///< K: among those wanted, or kNone
-  std::vector<double> exchange_;  ///< wanted * K, m^2
-  std::vector<double> squares_;   ///< of its error
-  std::vector<KnownRow> rows_;
-  std::vector<double> area_;
-};
-
 }  // namespace
 
 LeadingRows::LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted,
@@ -164,7 +96,7 @@ double LeadingRows::seconds(const RowSample& sample, Progress& progress) const {
 std::size_t LeadingRows::bytes() const {
   constexpr std::size_t kElementBytes = 512;  // as estimateExact()
   return scene_.elements.size() * kElementBytes +
-         2 * sizeof(double) * wanted_.size() * mesh_.unknowns() +
+         UnknownRows::bytes(wanted_.size(), mesh_.unknowns()) +
          allowedThreads() * scene_.tasks.panelBytes(scene_.elements);
 }
 

@@ -1,0 +1,34 @@
+// Lights under which rows that are cut are tried.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formfactor/rays/ray_scene.h"
+#include "matrix/patch_tree.h"
+#include "radiosity/patch_mesh.h"
+
+namespace radiosity {
+
+inline constexpr int kTrials = 4;
+
+/// Of each unknown, kTrials values each.
+struct TrialLights {
+  std::vector<double> radiosity;  ///< what rows bring
+  /// What falls on it anyway, which rows do not bring: errors are relative to all light. Empty: of
+  /// trials for which that is not known.
+  std::vector<double> direct;
+};
+
+/// The scene's own light, if some unknowns emit: what these give to all others directly, alike by
+/// area, and half of it reflected; one trial then. Else suns where a ray from some patch finds the
+/// sky, and lamps in mid-air where it finds a wall: those of many that spread farthest, with their
+/// shadows. Throws Cancelled.
+TrialLights trialLights(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,
+                        std::span<const Index> emitters, std::uint64_t seed, Progress& progress);
+
+/// Some patches of a tree, by place: of each part of it as many.
+std::vector<std::size_t> someOf(const PatchTree& tree);
+
+}  // namespace radiosity

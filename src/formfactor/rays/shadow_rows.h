@@ -1,0 +1,65 @@
+// The rows of a few unknowns, by shadow rays from all others.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formfactor/known_rows.h"
+#include "formfactor/rays/patch_points.h"
+#include "formfactor/rays/point_rays.h"
+
+namespace radiosity {
+
+class UnknownRows;
+
+/// What each patch sees of some that emit, where exact rows past what stands in between take too
+/// long. At points of the patch Lambert's formula tells what there is; rays from there to points
+/// that are spread over the emitter tell which share of it is hidden (direct lighting by
+/// stratified shadow rays: Shirley, Wang & Zimmerman, ACM TOG 15(1), 1996). The more rays the less
+/// two halves of them agree, until what they are off is little of all emitters' view.
+class ShadowRows {
+ public:
+  /// `wanted`: unknowns, each once. `mesh` is kept by reference.
+  ShadowRows(const PatchMesh& mesh, std::vector<Index> wanted, std::uint64_t seed);
+
+  /// Rays of compute(), at least.
+  double rays() const;
+  /// Seconds of compute() by the clock, from some patches. Throws Cancelled.
+  double seconds(Progress& progress) const;
+  /// Bytes held by compute() beside this, about.
+  std::size_t bytes() const;
+  /// A row for each wanted unknown. The same bits for any number of threads. Throws Cancelled.
+  std::vector<KnownRow> compute(Progress& progress) const;
+
+ private:
+  struct Emitter {
+    Index patch;
+    PatchArea area;
+  };
+  struct Share {
+    double value = 0;  ///< F from a patch to an emitter
+    double error = 0;  ///< standard, estimated
+  };
+  struct Found;
+
+  void addBlock(std::size_t begin, std::size_t count, UnknownRows& rows, Progress& progress) const;
+  void receive(Index patch, std::span<Share> shares) const;
+  bool faces(Index patch, const Emitter& emitter) const;
+  std::size_t firstLevel() const;
+  Share shareOf(const Found& a, const Found& b, std::size_t points) const;
+  Found look(const Emitter& emitter, const PatchPoints& points, std::size_t first,
+             std::size_t count) const;
+  double formula(const Emitter& emitter, const Vec3& at, const Vec3& normal) const;
+  std::vector<SeenBack> backsOf(const Emitter& emitter) const;
+
+  const PatchMesh& mesh_;
+  std::vector<Index> wanted_;
+  std::uint64_t seed_;
+  std::vector<Emitter> emitters_;
+  std::vector<Index> emitter_of_;  ///< N: among emitters_, or kNone
+  PointRays rays_;
+  SobolPoints sobol_;
+};
+
+}  // namespace radiosity
