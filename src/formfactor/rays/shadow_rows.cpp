@@ -23,7 +23,10 @@ namespace {
 constexpr std::array<std::size_t, 4> kShadowPoints{1, 8, 64, 512};
 constexpr std::size_t kAllPoints = 64;
 /// Of what a patch sees of all emitters.
-constexpr double kShadowTolerance = 0.01;
+constexpr double kShadowTolerance = 0.02;
+/// Beyond so many areas of it, squared distance, an emitter is a point: what a point of it brings
+/// is what all of it brings, but for some percent, which average out.
+constexpr double kNear = 16;
 /// seconds() looks from so many patches.
 constexpr std::size_t kShadowSample = 128;
 /// For the backs that an emitter sees: points, and rays of each.
@@ -193,19 +196,21 @@ ShadowRows::Found ShadowRows::look(const Emitter& emitter, const PatchPoints& po
   const double each = 1 / double(count);
   for (std::size_t k = first; k < first + count; ++k) {
     const Vec3& at = points.at[k];
-    found.formula += each * formula(emitter, at, points.normal);
     const auto& [u, v] = points.of_light[k];
     const Vec3 end = emitter.area.at(double(u), double(v));
     const Vec3 way = end - at;
     const double cosine = glm::dot(way, points.normal);
     const double other = -glm::dot(way, facing);
-    if (!(cosine > 0) || !(other > 0)) continue;
     const double square = glm::dot(way, way);
+    const bool is_near = square < kNear * emitter.area.size();
+    if (is_near) found.formula += each * formula(emitter, at, points.normal);
+    if (!(cosine > 0) || !(other > 0)) continue;
     from.push_back(at);
     to.push_back(end);
     share.push_back(each * emitter.area.size() * cosine * other /
                     (std::numbers::pi * square * square));
     found.whole += share.back();
+    if (!is_near) found.formula += share.back();
   }
   seen.resize(to.size());
   there.assign(to.size(), mesh_.polygon[emitter.patch]);
