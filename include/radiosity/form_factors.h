@@ -79,7 +79,7 @@ struct FormFactorOptions {
   /// exchange with all others is exact: those that emit (emittingUnknowns()), since all other light
   /// comes from them. In a hemicube's row what else was seen is scaled to the rest of 1. If exact
   /// rows would take more than half as long as the others and more than some seconds, or have more
-  /// than a million pairs, they are by shadow rays, to 1% of what a patch sees of emitters; if
+  /// than a million pairs, they are by shadow rays, to 2% of what a patch sees of emitters; if
   /// these would be many times as many as other rays, or there are more than ten million pairs,
   /// they are left to the method. The report says which. Exact: what other unknowns get from these
   /// is good to 5% itself where it is 1% of the mean or more, if they have a million pairs at most.

@@ -18,8 +18,8 @@ namespace radiosity {
 namespace {
 
 constexpr std::size_t kMostRows = 512;
-/// Of so many lights the kTrials are tried that spread farthest: one between two faces that nearly
-/// touch, or close to a wall, says nothing of the rest, and asks for ten times the rays.
+/// Of so many lights the kTrials are tried that reach most of the area: one between two faces that
+/// nearly touch says nothing of the rest.
 constexpr std::size_t kCandidates = 16;
 /// A shadow ray that comes this near to its lamp has reached it.
 constexpr float kReached = 1 - 1e-4F;
@@ -112,17 +112,6 @@ void shine(const RayScene& scene, std::span<const PatchTree::Patch> patches, con
   }
 }
 
-/// The area over which a light would give as much and be as strong, were it even.
-double spreadOf(std::span<const PatchTree::Patch> patches, std::span<const double> light) {
-  double sum = 0;
-  double squares = 0;
-  for (std::size_t k = 0; k < patches.size(); ++k) {
-    sum += patches[k].area * light[k];
-    squares += patches[k].area * light[k] * light[k];
-  }
-  return squares > 0 ? sum * sum / squares : 0.0;
-}
-
 std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& tree,
                                         std::uint64_t seed) {
   std::vector<PatchTree::Patch> some;
@@ -132,7 +121,9 @@ std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& 
   for (std::size_t c = 0; c < kCandidates; ++c) {
     const Trial trial = makeTrial(scene, tree, mixed(seed + c));
     shine(scene, some, trial, light);
-    candidates.emplace_back(spreadOf(some, light), trial);
+    double lit = 0;
+    for (std::size_t k = 0; k < some.size(); ++k) lit += light[k] > 0 ? some[k].area : 0.0;
+    candidates.emplace_back(lit, trial);
   }
   std::ranges::stable_sort(candidates, std::ranges::greater(), &std::pair<double, Trial>::first);
   std::array<Trial, kTrials> trials;

@@ -23,8 +23,8 @@ struct TrialLights {
 
 /// The scene's own light, if some unknowns emit: what these give to all others directly, alike by
 /// area, and half of it reflected; one trial then. Else suns where a ray from some patch finds the
-/// sky, and lamps in mid-air where it finds a wall: those of many that spread farthest, with their
-/// shadows. Throws Cancelled.
+/// sky, and lamps in mid-air where it finds a wall: those of many that reach most of the area, with
+/// their shadows. Throws Cancelled.
 TrialLights trialLights(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,
                         std::span<const Index> emitters, std::uint64_t seed, Progress& progress);
 

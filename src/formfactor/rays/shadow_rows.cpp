@@ -19,9 +19,9 @@ namespace radiosity {
 namespace {
 
 /// Points of a patch for each emitter, in each of two halves: at first so many that all emitters
-/// have kAllPoints or more, then as many as the tolerance takes.
+/// have kAllPoints or less, then as many as the tolerance takes.
 constexpr std::array<std::size_t, 4> kShadowPoints{1, 8, 64, 512};
-constexpr std::size_t kAllPoints = 64;
+constexpr std::size_t kAllPoints = 512;
 /// Of what a patch sees of all emitters.
 constexpr double kShadowTolerance = 0.02;
 /// Beyond so many areas of it, squared distance, an emitter is a point: what a point of it brings
@@ -63,7 +63,9 @@ ShadowRows::ShadowRows(const PatchMesh& mesh, std::vector<Index> wanted, std::ui
 }
 
 std::size_t ShadowRows::firstLevel() const {
-  return emitters_.size() * kShadowPoints[1] < kAllPoints ? 1 : 0;
+  std::size_t level = 2;
+  while (level > 0 && emitters_.size() * kShadowPoints[level] > kAllPoints) --level;
+  return level;
 }
 
 double ShadowRows::rays() const {
@@ -137,7 +139,7 @@ void ShadowRows::receive(Index patch, std::span<Share> shares) const {
   for (std::size_t level = firstLevel(); level < kShadowPoints.size(); ++level) {
     const bool is_first = level == firstLevel();
     const std::size_t count = kShadowPoints[level];
-    const std::size_t all_points = std::max(count, kAllPoints);
+    const std::size_t all_points = std::max(count, kShadowPoints[2]);
     std::optional<PatchPoints> first;
     std::optional<PatchPoints> second;
     for (std::size_t e = begin; e < emitters_.size(); ++e) {

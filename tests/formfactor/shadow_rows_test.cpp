@@ -1,0 +1,129 @@
+// Rows of emitters by shadow rays, against exact ones and closed forms.
+#include "formfactor/rays/shadow_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/parallel.h"
+#include "formfactor/computed_factors.h"
+#include "formfactor/exact_scenes.h"
+#include "radiosity/exchange_matrix.h"
+#include "support/mesh_builder.h"
+#include "visibility/clipping/point_to_polygon.h"
+
+namespace radiosity {
+namespace {
+
+std::vector<KnownRow> shadowRows(const PatchMesh& mesh, const std::vector<Index>& wanted) {
+  Progress quiet;
+  return ShadowRows(mesh, wanted, 1).compute(quiet);
+}
+
+class ShadowRowsOf : public testing::TestWithParam<const char*> {};
+
+// Each row is held against the exact one to 1e-2, as what all patches see of all emitters.
+TEST_P(ShadowRowsOf, AScene) {
+  const Scene scene = test::dataScene(GetParam());
+  const PatchMesh mesh = test::meshOf(scene, 1000);
+  ASSERT_FALSE(mesh.clusters);
+  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  ASSERT_FALSE(emitters.empty());
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-2));
+  std::vector<double> seen(mesh.size(), 0.0);
+  std::vector<double> squares(mesh.size(), 0.0);
+  for (const KnownRow& row : shadowRows(mesh, emitters)) {
+    for (const auto& [unknown, exchange, error] : row.entries) {
+      seen[unknown] += exchange / mesh.area[unknown];
+      squares[unknown] += error * error / (mesh.area[unknown] * mesh.area[unknown]);
+    }
+  }
+  double off = 0;
+  double norm = 0;
+  std::size_t outside = 0;
+  for (Index i = 0; i < mesh.size(); ++i) {
+    double whole = 0;
+    for (const Index e : emitters) whole += truth.matrix->at(i, e);
+    off += mesh.area[i] * (seen[i] - whole) * (seen[i] - whole);
+    norm += mesh.area[i] * whole * whole;
+    // Three standard errors, and a thousandth for what falls between all points.
+    outside += std::abs(seen[i] - whole) > 3 * std::sqrt(squares[i]) + 1e-3 ? 1 : 0;
+  }
+  // Rays are added until a patch is off by 2% of what it sees.
+  EXPECT_LT(std::sqrt(off / norm), 0.02);
+  EXPECT_LT(double(outside), 0.01 * double(mesh.size()));
+}
+
+INSTANTIATE_TEST_SUITE_P(ShadowRows, ShadowRowsOf,
+                         testing::Values("cornell-box-closed", "cluttered", "two-rooms"));
+
+TEST(ShadowRows, OfALampHaveAllThatItSees) {
+  const Scene scene = test::dataScene("cornell-box-closed");
+  const PatchMesh mesh = test::meshOf(scene, 600);
+  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  for (const KnownRow& row : shadowRows(mesh, emitters)) {
+    double sum = 0;
+    for (const KnownExchange& entry : row.entries) sum += entry.exchange;
+    for (const SeenBack& back : row.backs) sum += back.share * mesh.area[row.unknown];
+    // Of some 600 patches, each off by 2% of what it sees of all emitters at most.
+    EXPECT_NEAR(sum / mesh.area[row.unknown], 1, 0.01);
+  }
+}
+
+TEST(ShadowRows, HaveTheSameBitsForAnyThreads) {
+  const Scene scene = test::dataScene("cluttered");
+  const PatchMesh mesh = test::meshOf(scene, 300);
+  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  setThreads(1);
+  const std::vector<KnownRow> one = shadowRows(mesh, emitters);
+  setThreads(0);
+  const std::vector<KnownRow> all = shadowRows(mesh, emitters);
+  ASSERT_EQ(one.size(), all.size());
+  for (std::size_t r = 0; r < one.size(); ++r) {
+    ASSERT_EQ(one[r].entries.size(), all[r].entries.size());
+    for (std::size_t e = 0; e < one[r].entries.size(); ++e) {
+      EXPECT_EQ(one[r].entries[e].exchange, all[r].entries[e].exchange);
+    }
+  }
+}
+
+// 400 patches of a lamp and 2,500 below are more pairs than exact rows may have.
+TEST(ShadowRows, AreTakenWhereExactOnesAreTooMuch) {
+  test::MeshBuilder builder;
+  builder.grid("floor", {0, 0, 0}, {5, 0, 0}, {0, 5, 0}, 50, 50);
+  builder.grid("lamp", {2, 2, 1}, {0, 1, 0}, {1, 0, 0}, 20, 20);
+  const PatchMesh mesh = builder.build();
+  std::vector<Index> emitters;
+  for (Index i = 0; i < mesh.size(); ++i) {
+    if (mesh.surface_names[mesh.surface[i]] == "lamp") emitters.push_back(i);
+  }
+  ASSERT_EQ(emitters.size(), 400u);
+  for (const FormFactorMethod method : {FormFactorMethod::rays, FormFactorMethod::cut}) {
+    FormFactorOptions options;
+    options.method = method;
+    options.tolerance = 0.1;
+    options.exact_rows = emitters;
+    const FormFactors f = test::computed(mesh, options);
+    EXPECT_EQ(f.report.shadow_rows, 400u);
+    EXPECT_FALSE(f.report.exact_rows);
+    EXPECT_TRUE(std::ranges::any_of(f.report.notes, [](const Note& note) {
+      return note.text.find("by shadow rays") != std::string::npos;
+    }));
+    std::vector<double> lamp(mesh.size(), 0.0);
+    for (const Index e : emitters) lamp[e] = 1;
+    std::vector<double> irradiance(mesh.size());
+    f.matrix->product(lamp, 1, irradiance);
+    const std::vector<Vec3> outline{{2, 2, 1}, {2, 3, 1}, {3, 3, 1}, {3, 2, 1}};
+    for (Index i = 0; i < mesh.size(); ++i) {
+      if (lamp[i] > 0) continue;
+      // Patches of a tenth of the distance: the middle is within .2% of the mean.
+      const double whole = pointToPolygon(mesh.centroid[i], mesh.normal[i], outline);
+      EXPECT_NEAR(irradiance[i], whole, 0.01 * whole);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace radiosity
