@@ -38,7 +38,7 @@ add_room(scene/assimp KNOWS scene USES pugixml::pugixml)
 target_include_directories(radiosity_scene_assimp SYSTEM PRIVATE ${ASSIMP_INCLUDE_DIR})
 set_source_files_properties(src/scene/assimp/assimp_process.cpp PROPERTIES
                             COMPILE_DEFINITIONS "RADIOSITY_ASSIMP=\"${assimp_name}\"")
-add_room(results HEADERS results names vtk KNOWS gather heat lightmap scene/gltf
+add_room(results HEADERS results names vtk KNOWS gather heat illuminance lightmap scene/gltf
          USES radiosity_hdf5 TinyGLTF::TinyGLTF nlohmann_json::nlohmann_json)
 add_room(tables HEADERS tables matrix_files KNOWS results USES nlohmann_json::nlohmann_json)
 add_room(compare HEADERS compare KNOWS results)

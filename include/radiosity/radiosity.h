@@ -11,6 +11,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
+#include "radiosity/illuminance.h"
 #include "radiosity/light.h"
 #include "radiosity/light_basis.h"
 #include "radiosity/lightmap.h"

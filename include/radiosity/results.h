@@ -15,6 +15,7 @@
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
+#include "radiosity/illuminance.h"
 #include "radiosity/light_basis.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/patch_mesh.h"
@@ -234,6 +235,14 @@ struct LitMesh {
 /// .glb, .gltf (_RADIOSITY, else COLOR_0), .ply (red, green, blue; ASCII and binary) and .obj
 /// (`v x y z r g b`). Errors: InputError for a file without colours (with the cure), a damaged one.
 LitMesh readLitMesh(const std::string& path);
+
+/// Writes light at points: a header with units in its names, then a line a point: its place, the way
+/// that it faces, its illuminance and what it is made of, lx; that of a cylinder, of the six faces of
+/// a small cube and of half cylinders that face the four sides, lx; irradiance a band, W/m^2, all,
+/// direct and indirect; the standard error over all light; 1 where the point stands in a body; the
+/// name of its set. `light`: of all sets in turn. Errors: as the others, and illuminanceOf().
+void writeIlluminance(const std::string& path, std::span<const MeasuringPoints> sets,
+                      const PointLightValues& light);
 
 /// Writes heat exchange by surface: a header with units in its names, then a line a surface, all
 /// digits; unknown cells are empty. Errors: as the others.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/input_file.h"
+#include "base/parse.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -149,19 +150,13 @@ void requireCommas(const CsvReader& reader, const CsvTable::Row& header) {
                           only, only[other] == ';' ? "semicolons" : "tabs"));
 }
 
-}  // namespace
+bool isOfNumbers(const CsvTable::Row& row, std::size_t most) {
+  return row.fields.size() <= most && std::ranges::all_of(row.fields, [](const auto& field) {
+           return parseNumber(withoutBlanks(field)).has_value();
+         });
+}
 
-CsvTable readCsv(const std::string& path) { return parseCsv(path, readWholeFile(path)); }
-
-CsvTable parseCsv(const std::string& path, std::string_view text) {
-  CsvReader reader(path, text);
-  CsvTable table;
-  table.path = path;
-  CsvTable::Row row;
-  if (!reader.next(row)) reader.fail(1, "there is no header line; name the columns in the first");
-  requireCommas(reader, row);
-  table.header_line = row.line;
-  dropBlankEnd(row.fields, 1);
+void takeHeader(const CsvReader& reader, const CsvTable::Row& row, CsvTable& table) {
   for (const std::string& name : row.fields) {
     table.header.emplace_back(withoutBlanks(name));
     if (std::count(table.header.begin(), table.header.end(), table.header.back()) > 1) {
@@ -169,16 +164,40 @@ CsvTable parseCsv(const std::string& path, std::string_view text) {
                                         table.header.back()));
     }
   }
-  while (reader.next(row)) {
-    dropBlankEnd(row.fields, table.header.size());
-    if (row.fields.size() != table.header.size()) {
-      reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column, with "
-                                        "commas between them and points in numbers",
-                                        row.fields.size(), table.header.size()));
-    }
-    for (std::string& field : row.fields) field = std::string(withoutBlanks(field));
-    table.rows.push_back(std::move(row));
+}
+
+void addRow(const CsvReader& reader, CsvTable::Row row, CsvTable& table) {
+  dropBlankEnd(row.fields, table.header.size());
+  if (row.fields.size() != table.header.size()) {
+    reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column, with "
+                                      "commas between them and points in numbers",
+                                      row.fields.size(), table.header.size()));
   }
+  for (std::string& field : row.fields) field = std::string(withoutBlanks(field));
+  table.rows.push_back(std::move(row));
+}
+
+}  // namespace
+
+CsvTable readCsv(const std::string& path) { return parseCsv(path, readWholeFile(path)); }
+
+CsvTable parseCsv(const std::string& path, std::string_view text,
+                  std::span<const char* const> unnamed) {
+  CsvReader reader(path, text);
+  CsvTable table;
+  table.path = path;
+  CsvTable::Row row;
+  if (!reader.next(row)) reader.fail(1, "there is no header line; name the columns in the first");
+  requireCommas(reader, row);
+  dropBlankEnd(row.fields, 1);
+  table.header_line = row.line;
+  if (isOfNumbers(row, unnamed.size())) {
+    table.header.assign(unnamed.begin(), unnamed.begin() + std::ptrdiff_t(row.fields.size()));
+    addRow(reader, std::move(row), table);
+  } else {
+    takeHeader(reader, row, table);
+  }
+  while (reader.next(row)) addRow(reader, std::move(row), table);
   return table;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,9 +29,11 @@ struct CsvTable {
   std::optional<std::size_t> column(std::string_view name) const;
 };
 
-/// `path`: for messages. Errors: InputError that names file and line: no header, one with other
+/// `path`: for messages. `unnamed`: the names of columns, from the first, of a table that may do
+/// without a header: its first line is all numbers then. Errors: InputError that names file and line: no header, one with other
 /// separators, a column twice, a row of another number of fields, quotes that do not end.
-CsvTable parseCsv(const std::string& path, std::string_view text);
+CsvTable parseCsv(const std::string& path, std::string_view text,
+                  std::span<const char* const> unnamed = {});
 /// The same of a file. Errors: as readWholeFile(), too.
 CsvTable readCsv(const std::string& path);
 

@@ -126,6 +126,10 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
     return sub;
   }
   addOptionsOf<SolveOptions>(*sub, r, "Solve");
+  if (command == Command::illuminance) {
+    addPointOptions(*sub, r);
+    return sub;
+  }
   if (command == Command::solve) addBasisOption(*sub, r);
   if (command == Command::solve || command == Command::render) addMixOption(*sub, r);
   if (command == Command::solve) addMatrixOptions(*sub, r);
@@ -154,7 +158,7 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
 void checkCommandWord(int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
-  const std::string list = "info, mesh, factors, solve, gather, heat, compare, render or view";
+  const std::string list = "info, mesh, factors, solve, gather, heat, compare, render, illuminance or view";
   if (argc < 2) {
     throw InputError(
         fmt::format("a subcommand is missing: {}; e.g. radiosity render SCENE -o "

@@ -20,6 +20,8 @@ const char* descriptionOf(Command command) {
       return "Measure how far apart two lightings of one scene are, and where";
     case Command::render:
       return "Draw the lit scene, running missing stages first";
+    case Command::illuminance:
+      return "Measure illuminance, in lux, on grids and at points";
     case Command::view:
       break;
   }
@@ -129,6 +131,22 @@ const char* examplesOf(Command command) {
              "  radiosity render cornell.h5 --show form-factor:12 -o seen-from-12.png\n"
              "  radiosity render room.glb --camera 'eye=1,1.6,3;target=0,1,0' -o room.png -o "
              "room.h5";
+    case Command::illuminance:
+      return "Files (-o): .csv (points: lux, direct, indirect, cylindrical, semicylindrical, on a "
+             "cube;\n"
+             "W/m^2 a band), .png (plans of the grids: values, lines, colours), .h5 (results).\n"
+             "Printed of each set: minimum, mean, maximum, uniformity U0 and Ud. A watt of three "
+             "bands\n"
+             "is 683 lm times its luminance (Rec. 709); one band is grey. Points in bodies are "
+             "counted\n"
+             "and left out of the figures.\n\n"
+             "Examples:\n"
+             "  radiosity illuminance data/cornell-box.obj --grid floor:0.1 -o floor.csv -o "
+             "floor.png\n"
+             "  radiosity illuminance office.glb --light point,2000lm,at=2,1.5,2.4\n"
+             "             --grid floor:.8:.5 --grid 'wall*' -o office.png\n"
+             "  radiosity illuminance cornell.h5 --plane .1,.1,.1:.1,.1,.4:.4,.1,.4:.05\n"
+             "  radiosity illuminance cornell.h5 --points desks.csv -o desks-lit.csv";
     case Command::view:
       break;
   }

@@ -38,6 +38,7 @@ int runGather(Session& session);
 int runHeat(Session& session);
 int runCompare(Session& session);
 int runRender(Session& session);
+int runIlluminance(Session& session);
 int runView(Session& session);
 
 /// Runs in the other processes of mpirun: does the tasks of process 0, which runs the same command.

@@ -45,6 +45,8 @@ int dispatch(Session& session) {
       return runCompare(session);
     case Command::render:
       return runRender(session);
+    case Command::illuminance:
+      return runIlluminance(session);
     case Command::view:
       break;
   }

@@ -39,6 +39,9 @@ void addTableOptions(CLI::App& app, Request& r);
 void addBasisOption(CLI::App& app, Request& r);
 void addMixOption(CLI::App& app, Request& r);
 
+// point_options.cpp
+void addPointOptions(CLI::App& app, Request& r);
+
 // heat_options.cpp
 void addHeatOptions(CLI::App& app, Request& r);
 

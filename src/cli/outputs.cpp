@@ -29,16 +29,17 @@ struct Extension {
 const std::vector<Extension>& extensions() {
   using enum Command;
   static const std::vector<Extension> kAll = {
-      {".png", Format::png, {gather, compare, render}},
+      {".png", Format::png, {gather, compare, render, illuminance}},
       {".exr", Format::exr, {gather, render}},
       {".glb", Format::glb, {mesh, solve, gather, render}},
       {".obj", Format::obj, {mesh}},
       {".vtp", Format::vtp, {mesh, factors, solve, heat}},
       {".csv", Format::surface_table, {heat}},
-      {".h5", Format::results, {mesh, factors, solve, gather, heat, compare, render, view}},
+      {".h5", Format::results, {mesh, factors, solve, gather, heat, compare, render, illuminance, view}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
       {".csv", Format::csv, {factors}},
       {".csv", Format::light_csv, {solve}},
+      {".csv", Format::illuminance, {illuminance}},
       {".json", Format::json, {factors}},
       {".md", Format::markdown, {factors}},
       {".idf", Format::idf, {factors}},
@@ -98,13 +99,20 @@ struct InputPath {
 
 std::vector<InputPath> inputsOf(const Request& request) {
   const bool basis_file = request.basis != kBasisOfSurfaces;
-  return {{"the input itself", request.input},
+  std::vector<InputPath> inputs = {
+          {"the input itself", request.input},
           {"the second input", request.second},
           {"the table of --thermal", request.thermal},
           {"the table of --rows", request.rows},
           {"the file of --areas", request.areas},
           {"the table of --basis", basis_file ? request.basis : ""},
           {"the file of --materials", request.scene.materials_file}};
+  for (const PointsAsked& asked : request.points) {
+    if (asked.kind == PointsAsked::Kind::points) {
+      inputs.push_back({"the table of --points", asked.text});
+    }
+  }
+  return inputs;
 }
 
 /// A results file may take up what it was made from; no other output may replace a file that an

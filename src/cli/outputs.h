@@ -31,6 +31,7 @@ enum class Format {
   hdf5,
   page,
   lightmap,
+  illuminance,
   surface_table,
   patch_table
 };

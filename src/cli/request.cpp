@@ -30,6 +30,8 @@ const char* commandName(Command command) {
       return "compare";
     case Command::render:
       return "render";
+    case Command::illuminance:
+      return "illuminance";
     case Command::view:
       break;
   }
@@ -113,6 +115,7 @@ void Request::validate() const {
   apply(HeatOptions());
   apply(LightmapOptions());
   apply(CompareOptions());
+  apply(IlluminanceOptions());
   renderOptions();
   exposureStops();
   checkCamera(camera);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/given_options.h"
+#include "cli/measuring_points.h"
 #include "cli/time_limit.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/gather.h"
@@ -19,7 +20,7 @@
 
 namespace radiosity::cli {
 
-enum class Command { info, mesh, factors, solve, gather, heat, compare, render, view };
+enum class Command { info, mesh, factors, solve, gather, heat, compare, render, illuminance, view };
 
 struct Request {
   Command command = Command::info;
@@ -55,6 +56,8 @@ struct Request {
   bool compare_factors = false;
   std::string areas;  ///< a file with areas of the rows of a matrix
   std::string rows;   ///< a file with their reflectance and emission
+
+  std::vector<PointsAsked> points;  ///< of `illuminance`
 
   std::string camera;
   std::string exposure = "auto";

@@ -91,10 +91,12 @@ std::string methodsText() {
 void addFactorOptions(CLI::App& app, Request& r) {
   addOptionsOf<FormFactorOptions>(app, r, "Form factors");
   app.get_option("--method")->description(methodsText());
-  if (app.get_name() == commandName(Command::render)) {
+  if (app.get_name() == commandName(Command::render) ||
+      app.get_name() == commandName(Command::illuminance)) {
     CLI::Option* tolerance = app.get_option("--tolerance");
     tolerance->description(
-        fmt::format("{}; where elements are shown and no form factors are written, {} by default",
+        fmt::format("{}; where elements are shown or points measured and no form factors are written, {} by "
+                    "default",
                     tolerance->get_description(), FormFactorOptions::kSourceTolerance));
   }
   addOptionsOf<JournalOptions>(app, r, "Form factors");

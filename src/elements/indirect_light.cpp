@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace radiosity {
@@ -13,16 +12,6 @@ double total(std::span<const double> values) {
 }
 
 }  // namespace
-
-void ReflectedLight::addEnd(const RayEnd& end, const Vec3& from, std::span<double> sum) const {
-  if (end.patch == RayEnd::kSky) {
-    for (std::size_t b = 0; b < background_.size(); ++b) {
-      sum[b] += std::numbers::pi * background_[b];
-    }
-  } else if (end.patch < RayEnd::kOwn) {
-    if (const auto source = sources_.sourceAt(end.patch, end.at, from)) sources_.add(*source, sum);
-  }
-}
 
 double ReflectedLight::irradiance(const SurfacePoint& point, const ElementLights* /*lights*/,
                                   std::span<double> out) const {
@@ -63,7 +52,7 @@ double ReflectedLight::look(const SurfacePoint& point, const HemisphereSet& set,
     counted_first += in_first ? 1 : 0;
     const std::span<double> sum = in_first ? std::span<double>(first) : out;
     const double before = total(sum);
-    addEnd(ends[k], point.position, sum);
+    light_.add(ends[k], point.position, sum);
     const double brought = total(sum) - before;
     squares += brought * brought;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "elements/field_builder.h"
+#include "elements/ray_light.h"
 #include "elements/source_cells.h"
 #include "formfactor/rays/point_rays.h"
 #include "radiosity/elements.h"
@@ -25,8 +26,7 @@ class ReflectedLight : public FieldLight {
       : surface_(surface),
         rays_(rays),
         set_(set),
-        sources_(sources),
-        background_(background(lights, sources.bands())),
+        light_(sources, lights),
         seed_(seed) {}
   /// Takes the set `more`, kept by reference, if the standard error of as many random rays would be
   /// more than `uneven` of their mean, or if the means of two halves are off by more than `apart`.
@@ -47,7 +47,6 @@ class ReflectedLight : public FieldLight {
   std::size_t repeated() const { return repeated_; }
 
  private:
-  void addEnd(const RayEnd& end, const Vec3& from, std::span<double> sum) const;
   double look(const SurfacePoint& point, const HemisphereSet& set, std::span<double> out,
               double& spread) const;
 
@@ -57,8 +56,7 @@ class ReflectedLight : public FieldLight {
   const HemisphereSet* more_ = nullptr;
   double uneven_ = 0;
   double apart_ = 0;
-  const SourceCells& sources_;
-  std::vector<double> background_;  ///< radiance a band, or empty
+  RayLight light_;
   std::uint64_t seed_;
   mutable std::atomic<std::size_t> repeated_ = 0;
 };

@@ -48,6 +48,8 @@ ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset
       insets_(findInsets(mesh, inset)),
       inner_insets_(inner ? findInsets(mesh, *inner) : insets_) {
   for (Index p = 0; p < mesh.polygons.size(); ++p) owners.push_back({p});
+  nobody = Index(owners.size());
+  owners.emplace_back();
   addVertices(mesh, cornerGroups(mesh, crease));
   addEdges(mesh, crease);
   insetCorners(mesh, inset, insets_, &SurfaceEdge::inset, &SurfacePoint::position);

@@ -82,6 +82,7 @@ struct ElementSurface {
   std::vector<SurfacePoint> points;
   EdgeMap edges;                           ///< of the roots
   std::vector<std::vector<Index>> owners;  ///< polygons; set p < P is polygon p alone
+  Index nobody = 0;                        ///< the empty set, of points off all surfaces
   std::vector<std::uint8_t> curved;        ///< R, 1: some corner's normal is not the root's own
 
  private:

@@ -1,0 +1,193 @@
+#include "radiosity/illuminance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/figure_text.h"
+#include "base/geometry/box.h"
+#include "cli/commands.h"
+#include "cli/field_lines.h"
+#include "cli/measuring_points.h"
+#include "cli/summaries.h"
+#include "cli/words.h"
+#include "radiosity/results.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// Refuses what cannot be measured or drawn before any work is done.
+void checkMeasuring(const Request& request, const OutputSet& files) {
+  if (request.points.empty()) {
+    throw InputError(
+        "illuminance: say where it is measured, with --grid SURFACE:HEIGHT, --plane or --points, "
+        "e.g. --grid floor:.8");
+  }
+  for (const PointsAsked& asked : request.points) checkPoints(asked);
+  const bool any_grid = std::ranges::any_of(request.points, [](const PointsAsked& asked) {
+    return asked.kind != PointsAsked::Kind::points;
+  });
+  if (files.has(Format::png) && !any_grid) {
+    throw InputError(files.path(Format::png) +
+                     ": a plan is of a grid; add --grid or --plane, or write the points to a .csv");
+  }
+}
+
+void requireLuxBands(const Pipeline& pipeline) {
+  illuminanceOf(std::vector<double>(std::size_t(pipeline.bands()), 0.0));
+}
+
+/// Whether all points lie outside of the box around the room.
+bool isBeyond(const MeasuringPoints& set, const PatchMesh& mesh) {
+  constexpr double kRounding = 1e-6;
+  const Box3 room = boxOf(mesh.vertices);
+  const Box3 around = room.grown(kRounding * room.diagonal());
+  return std::ranges::none_of(set.at, [&](const Vec3& p) { return around.contains(p); });
+}
+
+[[noreturn]] void refuseSet(const MeasuringPoints& set, const char* where) {
+  throw InputError(fmt::format("{}: all of its {} points {}; check the height and the unit of the "
+                               "scene (metres here)",
+                               set.name, countText(set.size()), where));
+}
+
+std::vector<MeasuringPoints> measuringPoints(Session& session, const Scene& scene) {
+  std::vector<MeasuringPoints> sets;
+  for (const PointsAsked& asked : session.request.points) {
+    sets.push_back(pointsOf(asked, scene));
+    session.report.notes(sets.back().notes);
+  }
+  return sets;
+}
+
+PointLightValues measure(Session& session, Pipeline& pipeline,
+                         std::span<const MeasuringPoints> sets) {
+  std::vector<Vec3> at;
+  std::vector<Vec3> normals;
+  for (const MeasuringPoints& set : sets) {
+    at.insert(at.end(), set.at.begin(), set.at.end());
+    normals.insert(normals.end(), set.normal.begin(), set.normal.end());
+  }
+  return lightAtPoints(pipeline.mesh().mesh, pipeline.materials(), pipeline.solution().irradiance,
+                       pipeline.options().elements, at, normals, pipeline.scene().up,
+                       session.request.apply(IlluminanceOptions()), session.progress);
+}
+
+void placeLine(Report& report, const std::string& key, const std::string& label, const Vec3& at) {
+  const double place[] = {at.x, at.y, at.z};
+  report.bands(key, label, place, "m");
+}
+
+void summarizeSet(Report& report, const std::string& key, const MeasuringPoints& set,
+                  const IlluminanceSummary& s) {
+  report.section(key, "Illuminance: " + set.name);
+  report.count("points", "points", set.size());
+  if (s.inside > 0) {
+    report.count("in_bodies", "  in bodies, left out of all figures", s.inside);
+  }
+  if (set.grid) {
+    const double spacing[] = {set.grid->step_u, set.grid->step_v};
+    report.bands("spacing_m", "spacing", spacing, "m");
+  }
+  const Vec3& n = set.normal.front();
+  const double facing[] = {n.x, n.y, n.z};
+  if (set.grid || set.size() == 1) report.bands("facing", "facing", facing, "");
+  report.number("mean_lx", "mean", s.mean, "lx");
+  report.number("lowest_lx", "minimum", s.lowest, "lx");
+  placeLine(report, "lowest_at_m", "  at", s.lowest_at);
+  report.number("highest_lx", "maximum", s.highest, "lx");
+  placeLine(report, "highest_at_m", "  at", s.highest_at);
+  report.number("u0", "uniformity U0, minimum over mean", s.overMean());
+  report.number("ud", "uniformity Ud, minimum over maximum", s.overHighest());
+  report.number("direct_mean_lx", "mean, direct", s.direct, "lx");
+  report.number("indirect_mean_lx", "mean, indirect", s.indirect, "lx");
+  report.number("cylindrical_mean_lx", "mean, cylindrical", s.cylinder, "lx");
+}
+
+void summarizeMeasuring(Report& report, const PointLightValues& light) {
+  report.section("measuring", "Measuring");
+  report.text("lumens", "lumens",
+              light.bands == 1
+                  ? fmt::format("{:g} a watt of the one band: grey", kLumensPerWatt)
+                  : fmt::format("{:g} a watt of luminance, Rec. 709", kLumensPerWatt));
+  FieldLines lines(report);
+  IlluminanceReport::describe(lines, light.report);
+  if (light.report.direct == DirectLight::hemispheres) {
+    const Note note{Severity::info,
+                    "there are too many emitters to aim at: their light is found with the indirect "
+                    "light, and counted there"};
+    report.notes({&note, 1});
+  }
+  const double asked = IlluminanceOptions().tolerance;
+  if (light.report.largest_error > asked) {
+    report.line("note", fmt::format("some points are off by more than {} %, by {} % at most: they "
+                                    "took all rays that a point may have",
+                                    numberText(100 * asked, 3),
+                                    numberText(100 * light.report.largest_error, 3)));
+  }
+}
+
+void writeMeasured(std::span<const MeasuringPoints> sets, const PointLightValues& light,
+                   OutputSet& files) {
+  files.write(Format::illuminance, "illuminance at points", [&](const std::string& temporary) {
+    writeIlluminance(temporary, sets, light);
+  });
+  files.write(Format::png, "plan, lx", [&](const std::string& temporary) {
+    std::vector<Image> plans;
+    std::size_t first = 0;
+    for (const MeasuringPoints& set : sets) {
+      if (set.grid) plans.push_back(illuminancePlan(set, light, first));
+      first += set.size();
+    }
+    const std::pair<std::string, std::string> about[] = {{"quantity", "illuminance"},
+                                                         {"unit", "lx"}};
+    writeImage(temporary, stacked(plans), true, about);
+  });
+}
+
+}  // namespace
+
+int runIlluminance(Session& session) {
+  OutputSet files = claimOutputs(session);
+  checkMeasuring(session.request, files);
+  Run run(session, files.path(Format::results));
+  Pipeline& pipeline = run.pipeline;
+  pipeline.options().factors.sources_only |=
+      !pipeline.fromResultsFile() && !files.has(Format::results);
+  requireLuxBands(pipeline);
+  requireLight(session, pipeline);
+  const std::vector<MeasuringPoints> sets = measuringPoints(session, pipeline.scene());
+  if (!files.has(Format::results) && pipeline.onlyAdds()) {
+    files.add({session.request.input, Format::results});
+  }
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const bool closed = pipeline.factors().report.closed;
+  for (const MeasuringPoints& set : sets) {
+    if (closed && isBeyond(set, mesh)) refuseSet(set, "lie beyond the room");
+  }
+  keepFactors(session, pipeline, files);
+  const int code = judgeSolution(session, pipeline);
+  if (pipeline.solution().summary.status == SolveStatus::singular) {
+    throw RunError("no illuminance: the system is singular");
+  }
+  keepSolution(session, pipeline, files);
+  const PointLightValues light = measure(session, pipeline, sets);
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    const IlluminanceSummary summary = summaryOf(sets[k], light, first);
+    if (summary.points == 0) refuseSet(sets[k], "stand in bodies or behind surfaces");
+    const std::string key = k == 0 ? "illuminance" : fmt::format("illuminance_{}", k + 1);
+    summarizeSet(session.report, key, sets[k], summary);
+    first += sets[k].size();
+  }
+  summarizeMeasuring(session.report, light);
+  writeMeasured(sets, light, files);
+  writeStages(session, pipeline, files);
+  files.commit(session.report, session.progress);
+  noteUnsaved(session, pipeline, files);
+  return code;
+}
+
+}  // namespace radiosity::cli

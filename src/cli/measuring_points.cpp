@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include "base/parse.h"
+#include "cli/measuring_points.h"
+
+namespace radiosity::cli {
+
+namespace {
+
+/// SURFACE[:HEIGHT[:SPACING]]. A name may have colons: only numbers at the end are none of it.
+struct GridText {
+  std::string surface;
+  double height = 0;
+  std::optional<double> spacing;
+};
+
+GridText parseGrid(const std::string& text) {
+  GridText grid{text, 0, {}};
+  std::vector<double> numbers;  // from the end
+  while (numbers.size() < 2) {
+    const std::size_t colon = grid.surface.rfind(':');
+    if (colon == std::string::npos || colon == 0) break;
+    const std::optional<double> number = parseNumber(grid.surface.substr(colon + 1));
+    if (!number) break;
+    numbers.push_back(*number);
+    grid.surface.resize(colon);
+  }
+  if (!numbers.empty()) grid.height = numbers.back();
+  if (numbers.size() == 2) grid.spacing = numbers.front();
+  if (grid.surface.empty()) {
+    throw InputError("--grid: no surface is named; give SURFACE[:HEIGHT[:SPACING]], e.g. floor:.8");
+  }
+  return grid;
+}
+
+struct PlaneText {
+  std::array<Vec3, 3> corners{};
+  std::optional<double> spacing;
+};
+
+PlaneText parsePlane(const std::string& text) {
+  const std::vector<std::string_view> parts = splitAt(text, ':');
+  const auto fail = [&](const std::string& what) {
+    throw InputError(fmt::format(
+        "--plane: {}; give three corners in turn, X,Y,Z:X,Y,Z:X,Y,Z in metres, and perhaps "
+        ":SPACING",
+        what));
+  };
+  if (parts.size() != 3 && parts.size() != 4) {
+    fail(fmt::format("'{}' has {} parts", text, parts.size()));
+  }
+  PlaneText plane;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::optional<Vec3> corner = parseTriple(parts[k]);
+    if (!corner) fail(fmt::format("'{}' is no corner", parts[k]));
+    plane.corners[k] = *corner;
+  }
+  if (parts.size() == 4) {
+    plane.spacing = parseNumber(parts[3]);
+    if (!plane.spacing) fail(fmt::format("'{}' is no spacing", parts[3]));
+  }
+  return plane;
+}
+
+}  // namespace
+
+void checkPoints(const PointsAsked& asked) {
+  switch (asked.kind) {
+    case PointsAsked::Kind::grid:
+      parseGrid(asked.text);
+      return;
+    case PointsAsked::Kind::plane: {
+      const PlaneText plane = parsePlane(asked.text);
+      pointsOnPlane(plane.corners, plane.spacing);
+      return;
+    }
+    case PointsAsked::Kind::points:
+      readMeasuringPoints(asked.text, Up::y);
+  }
+}
+
+MeasuringPoints pointsOf(const PointsAsked& asked, const Scene& scene) {
+  switch (asked.kind) {
+    case PointsAsked::Kind::grid: {
+      const GridText grid = parseGrid(asked.text);
+      return pointsOverSurface(scene, grid.surface, grid.height, grid.spacing);
+    }
+    case PointsAsked::Kind::plane: {
+      const PlaneText plane = parsePlane(asked.text);
+      return pointsOnPlane(plane.corners, plane.spacing);
+    }
+    case PointsAsked::Kind::points:
+      break;
+  }
+  return readMeasuringPoints(asked.text, scene.up);
+}
+
+}  // namespace radiosity::cli

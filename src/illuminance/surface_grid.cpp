@@ -1,0 +1,304 @@
+// A grid over a planar surface of a scene.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "base/geometry/plane_frame.h"
+#include "base/finite.h"
+#include "illuminance/directions.h"
+#include "illuminance/grid.h"
+#include "scene/surface_names.h"
+
+namespace radiosity {
+namespace {
+
+/// Faces are in one plane if no corner is further off it than this share of their size.
+constexpr double kFlat = 1e-4;
+/// A rectangle along other edges has to be smaller by this, so that squares keep to the axes.
+constexpr double kSmaller = 1 - 1e-6;
+
+struct Faces {
+  std::vector<std::size_t> number;  ///< of the scene
+  std::vector<Vec3> area;           ///< vector area of each
+};
+
+Vec3 vectorAreaOf(const Scene& scene, std::size_t face) {
+  const std::span<const Index> corners = scene.face(face);
+  return vectorArea(corners.size(), [&](std::size_t k) { return scene.vertices[corners[k]]; });
+}
+
+Faces facesOf(const Scene& scene, const std::vector<Index>& surfaces) {
+  Faces faces;
+  for (std::size_t f = 0; f < scene.faceCount(); ++f) {
+    if (!std::ranges::binary_search(surfaces, scene.face_surface[f])) continue;
+    const Vec3 area = vectorAreaOf(scene, f);
+    if (!(glm::length(area) > 0)) continue;
+    faces.number.push_back(f);
+    faces.area.push_back(area);
+  }
+  return faces;
+}
+
+/// The unit normal of the plane that all faces are in, of those turned both ways that of the
+/// largest face; none if they are in several planes.
+std::optional<Vec3> planeOf(const Scene& scene, const Faces& faces) {
+  const auto largest = std::ranges::max_element(
+      faces.area, {}, [](const Vec3& area) { return glm::dot(area, area); });
+  const Vec3 normal = glm::normalize(*largest);
+  const Vec3 origin =
+      scene.vertices[scene.face(faces.number[std::size_t(largest - faces.area.begin())])[0]];
+  double size = 0;
+  double off = 0;
+  for (const std::size_t f : faces.number) {
+    for (const Index corner : scene.face(f)) {
+      const Vec3 from = scene.vertices[corner] - origin;
+      size = std::max(size, glm::length(from));
+      off = std::max(off, std::abs(glm::dot(from, normal)));
+    }
+  }
+  if (off > kFlat * size) return std::nullopt;
+  return normal;
+}
+
+/// Of faces that are turned both ways, those that face as `normal` does, or the other way.
+Faces facing(const Faces& faces, const Vec3& normal) {
+  Faces out;
+  for (std::size_t k = 0; k < faces.number.size(); ++k) {
+    if (!(glm::dot(faces.area[k], normal) > 0)) continue;
+    out.number.push_back(faces.number[k]);
+    out.area.push_back(faces.area[k]);
+  }
+  return out;
+}
+
+Faces facingUp(const Scene& scene, const Faces& faces) {
+  constexpr double kUpright = 0.999;
+  Faces out;
+  for (std::size_t k = 0; k < faces.number.size(); ++k) {
+    const double cosine = glm::dot(glm::normalize(faces.area[k]), upVector(scene.up));
+    if (cosine < kUpright) continue;
+    out.number.push_back(faces.number[k]);
+    out.area.push_back(faces.area[k]);
+  }
+  return out;
+}
+
+bool isTwoSided(const Scene& scene, const Faces& faces) {
+  return std::ranges::all_of(faces.number,
+                             [&](std::size_t f) { return scene.materialOf(f).two_sided; });
+}
+
+/// The convex hull, counter-clockwise (A. Andrew, Inf. Proc. Letters 9(5), 1979).
+std::vector<Vec2> hullOf(std::vector<Vec2> points) {
+  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) {
+    return a.x != b.x ? a.x < b.x : a.y < b.y;
+  });
+  std::vector<Vec2> hull;
+  for (int half = 0; half < 2; ++half) {
+    const std::size_t start = hull.size();
+    for (const Vec2& p : points) {
+      while (hull.size() >= start + 2 &&
+             cross2(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0) {
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::ranges::reverse(points);
+  }
+  return hull;
+}
+
+/// The rectangle around the hull with a side along `u`, in its coordinates (u, v).
+PlaneArea boundsAlong(const PlaneFrame& flat, const std::vector<Vec2>& hull, const Vec2& u) {
+  PlaneArea area;
+  area.frame = makeFrame(flat.origin, flat.n, u.x * flat.u + u.y * flat.v);
+  area.low = Vec2(std::numeric_limits<double>::infinity());
+  area.high = -area.low;
+  for (const Vec2& p : hull) {
+    const Vec2 at{glm::dot(p, u), cross2(u, p)};
+    area.low = glm::min(area.low, at);
+    area.high = glm::max(area.high, at);
+  }
+  return area;
+}
+
+double sizeOf(const PlaneArea& area) {
+  return (area.high.x - area.low.x) * (area.high.y - area.low.y);
+}
+
+/// The smallest rectangle: one side lies along an edge of the hull (Freeman & Shapira, CACM 18(7),
+/// 1975).
+PlaneArea smallestArea(const PlaneFrame& flat, const std::vector<Vec2>& hull) {
+  PlaneArea best = boundsAlong(flat, hull, {1, 0});
+  for (std::size_t k = 0; k < hull.size(); ++k) {
+    const Vec2 edge = hull[(k + 1) % hull.size()] - hull[k];
+    if (!(glm::length(edge) > 0)) continue;
+    const PlaneArea other = boundsAlong(flat, hull, glm::normalize(edge));
+    if (sizeOf(other) < kSmaller * sizeOf(best)) best = other;
+  }
+  return best;
+}
+
+/// The same rectangle, turned so that columns point up on walls, and rows to the right, +x, on
+/// floors.
+PlaneArea turned(const PlaneArea& area, Up up) {
+  PlaneArea best = area;
+  double most = -std::numeric_limits<double>::infinity();
+  PlaneArea now = area;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    constexpr double kUpFirst = 10;
+    const double score = kUpFirst * glm::dot(now.frame.v, upVector(up)) + now.frame.u.x;
+    if (score > most + 1e-9) {
+      most = score;
+      best = now;
+    }
+    // A quarter on: u becomes v, and v becomes -u.
+    std::swap(now.frame.u, now.frame.v);
+    now.frame.v = -now.frame.v;
+    now = {now.frame, {now.low.y, -now.high.x}, {now.high.y, -now.low.x}};
+  }
+  return best;
+}
+
+/// Whether a point is in a face's outline, by the crossings of a ray to the right. Of faces side by
+/// side one has a point on their border.
+bool holds(const std::vector<Vec2>& outline, const Vec2& p) {
+  bool inside = false;
+  for (std::size_t k = 0, before = outline.size() - 1; k < outline.size(); before = k++) {
+    const Vec2& a = outline[k];
+    const Vec2& b = outline[before];
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    if (p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x) inside = !inside;
+  }
+  return inside;
+}
+
+/// Marks the cells whose points a face holds.
+void mark(const std::vector<Vec2>& outline, const PlaneArea& area, const GridLine& columns,
+          const GridLine& rows, std::vector<std::uint8_t>& held) {
+  Vec2 low(std::numeric_limits<double>::infinity());
+  Vec2 high = -low;
+  for (const Vec2& p : outline) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const auto range = [](double from, double to, double begin, const GridLine& line) {
+    const double first = std::ceil((from - begin - line.first) / line.step - 1e-9);
+    const double last = std::floor((to - begin - line.first) / line.step + 1e-9);
+    return std::pair(std::ptrdiff_t(std::max(first, 0.0)),
+                     std::ptrdiff_t(std::min(last, double(line.count) - 1)));
+  };
+  const auto [left, right] = range(low.x, high.x, area.low.x, columns);
+  const auto [bottom, top] = range(low.y, high.y, area.low.y, rows);
+  for (std::ptrdiff_t row = bottom; row <= top; ++row) {
+    for (std::ptrdiff_t column = left; column <= right; ++column) {
+      const Vec2 at = area.low + Vec2(columns.first + double(column) * columns.step,
+                                      rows.first + double(row) * rows.step);
+      if (holds(outline, at)) held[std::size_t(row) * columns.count + std::size_t(column)] = 1;
+    }
+  }
+}
+
+struct PlanarFaces {
+  Faces faces;
+  Vec3 normal{0.0};
+  std::vector<Note> notes;
+};
+
+/// The faces that are meant, and the way that the grid faces.
+PlanarFaces planarFaces(const Scene& scene, const std::string& name) {
+  const std::vector<Index> surfaces = surfacesMeant(scene, name);
+  if (surfaces.empty()) throw InputError("grid: " + unknownNameText(scene, name));
+  PlanarFaces out;
+  out.faces = facesOf(scene, surfaces);
+  if (out.faces.number.empty()) {
+    throw InputError(fmt::format("grid: {} has no area; name another surface, or give a plane",
+                                 name));
+  }
+  std::optional<Vec3> normal = planeOf(scene, out.faces);
+  if (!normal) {
+    const std::size_t all = out.faces.number.size();
+    out.faces = facingUp(scene, out.faces);
+    if (!out.faces.number.empty()) normal = planeOf(scene, out.faces);
+    if (!normal) {
+      throw InputError(fmt::format(
+          "grid: {} is not planar, nor are its faces that face up; name a planar surface, or give "
+          "a plane by three corners",
+          name));
+    }
+    out.notes.push_back({Severity::info,
+                         fmt::format("grid: {} is not planar; its points stand over the {} of its "
+                                     "{} faces that face up",
+                                     name, out.faces.number.size(), all)});
+  }
+  if (isTwoSided(scene, out.faces) && glm::dot(*normal, upVector(scene.up)) < -kFlat) {
+    *normal = -*normal;
+  }
+  if (!isTwoSided(scene, out.faces)) out.faces = facing(out.faces, *normal);
+  out.normal = *normal;
+  return out;
+}
+
+}  // namespace
+
+MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, double height,
+                                  std::optional<double> spacing) {
+  if (!std::isfinite(height)) throw InputError("grid: the height is no finite number of metres");
+  PlanarFaces planar = planarFaces(scene, name);
+  const Vec3 normal = height < 0 ? -planar.normal : planar.normal;
+  const Vec3 origin = scene.vertices[scene.face(planar.faces.number[0])[0]];
+  const PlaneFrame flat = makeFrame(origin, normal, axisAcross(normal));
+  std::vector<Vec2> corners;
+  for (const std::size_t f : planar.faces.number) {
+    for (const Index corner : scene.face(f)) corners.push_back(flat.flat(scene.vertices[corner]));
+  }
+  const PlaneArea area = turned(smallestArea(flat, hullOf(std::move(corners))), scene.up);
+  const Vec2 sides = area.high - area.low;
+  const std::string what = "grid: " + name;
+  const GridLine columns = gridLine(what, sides.x, sides.y, spacing);
+  const GridLine rows = gridLine(what, sides.y, sides.x, spacing);
+  requireFewPoints(what, columns, rows);
+  std::vector<std::uint8_t> held(columns.count * rows.count, 0);
+  std::vector<Vec2> outline;
+  for (const std::size_t f : planar.faces.number) {
+    outline.clear();
+    for (const Index corner : scene.face(f)) {
+      outline.push_back(area.frame.flat(scene.vertices[corner]));
+    }
+    mark(outline, area, columns, rows, held);
+  }
+  MeasuringPoints out;
+  out.name = height == 0 ? name : fmt::format("{} + {:.6g} m", name, std::abs(height));
+  if (height < 0) out.name = fmt::format("{} - {:.6g} m", name, -height);
+  out.notes = std::move(planar.notes);
+  out.grid = MeasuringPoints::Grid{
+      .first = area.frame.lift(area.low + Vec2(columns.first, rows.first)) +
+               std::abs(height) * normal,
+      .u = area.frame.u,
+      .v = area.frame.v,
+      .step_u = columns.step,
+      .step_v = rows.step,
+      .columns = columns.count,
+      .rows = rows.count};
+  for (std::size_t cell = 0; cell < held.size(); ++cell) {
+    if (held[cell] == 0) continue;
+    const double column = double(cell % columns.count);
+    const double row = double(cell / columns.count);
+    out.at.push_back(out.grid->first + column * columns.step * area.frame.u +
+                     row * rows.step * area.frame.v);
+    out.cell.push_back(cell);
+  }
+  if (out.at.empty()) {
+    throw InputError(fmt::format(
+        "{}: no point of a grid of {:.6g} m lies within its outline; give a smaller spacing", what,
+        columns.step));
+  }
+  out.normal.assign(out.at.size(), normal);
+  return out;
+}
+
+}  // namespace radiosity
