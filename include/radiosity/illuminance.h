@@ -115,6 +115,7 @@ struct IlluminanceReport {
   std::size_t most_rays = 0;  ///< of a point
   /// Standard errors over all light of the point, facing: the largest, and the root mean square.
   double largest_error = 0;
+  std::size_t largest_error_at = 0;  ///< the point
   double ray_error = 0;
   double seconds = 0;  ///< by the clock, of the points alone
 

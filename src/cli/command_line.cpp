@@ -23,7 +23,8 @@ namespace {
 
 constexpr std::array kCommands = {Command::info,    Command::mesh,   Command::factors,
                                   Command::solve,   Command::gather, Command::heat,
-                                  Command::compare, Command::render, Command::view};
+                                  Command::compare, Command::render, Command::illuminance,
+                                  Command::view};
 
 void addCompareOptions(CLI::App& app, Request& r) {
   app.add_option("B", r.second, "The file to compare with A; none with --gather")->option_text(" ");

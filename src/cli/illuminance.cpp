@@ -106,7 +106,7 @@ void summarizeSet(Report& report, const std::string& key, const MeasuringPoints&
   report.number("cylindrical_mean_lx", "mean, cylindrical", s.cylinder, "lx");
 }
 
-void summarizeMeasuring(Report& report, const PointLightValues& light) {
+void summarizeMeasuring(Report& report, const PointLightValues& light, double asked) {
   report.section("measuring", "Measuring");
   report.text("lumens", "lumens",
               light.bands == 1
@@ -120,12 +120,14 @@ void summarizeMeasuring(Report& report, const PointLightValues& light) {
                     "light, and counted there"};
     report.notes({&note, 1});
   }
-  const double asked = IlluminanceOptions().tolerance;
   if (light.report.largest_error > asked) {
-    report.line("note", fmt::format("some points are off by more than {} %, by {} % at most: they "
-                                    "took all rays that a point may have",
-                                    numberText(100 * asked, 3),
-                                    numberText(100 * light.report.largest_error, 3)));
+    const std::size_t worst = light.report.largest_error_at;
+    report.line("note",
+                fmt::format("some points are off by more than {} % though they took all rays that "
+                            "a point may have: one of {} lx by {} %",
+                            numberText(100 * asked, 3),
+                            numberText(light.lux(worst, Measured::facing), 3),
+                            numberText(100 * light.report.largest_error, 3)));
   }
 }
 
@@ -182,7 +184,8 @@ int runIlluminance(Session& session) {
     summarizeSet(session.report, key, sets[k], summary);
     first += sets[k].size();
   }
-  summarizeMeasuring(session.report, light);
+  summarizeMeasuring(session.report, light,
+                     session.request.apply(IlluminanceOptions()).tolerance);
   writeMeasured(sets, light, files);
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

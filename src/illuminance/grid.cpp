@@ -89,7 +89,7 @@ MeasuringPoints pointsOnPlane(const std::array<Vec3, 3>& corners, std::optional<
       out.cell.push_back(row * columns.count + column);
     }
   }
-  out.normal.assign(out.at.size(), glm::normalize(normal));
+  out.normal.assign(out.at.size(), withoutMinusZero(glm::normalize(normal)));
   out.grid = grid;
   return out;
 }

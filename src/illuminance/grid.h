@@ -17,6 +17,9 @@ struct PlaneArea {
   Vec2 high{0.0};
 };
 
+/// 0 for -0, which a report would print.
+inline Vec3 withoutMinusZero(const Vec3& v) { return v + Vec3(0.0); }
+
 /// The places of points along a side.
 struct GridLine {
   std::size_t count = 0;

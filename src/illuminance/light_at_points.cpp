@@ -249,7 +249,10 @@ PointLightValues lightAtPoints(const PatchMesh& mesh, const PatchMaterials& mate
     out.report.rays += double(rays[k]);
     out.report.most_rays = std::max(out.report.most_rays, rays[k]);
     if (out.inside[k] != 0) continue;
-    out.report.largest_error = std::max(out.report.largest_error, out.error[k]);
+    if (out.error[k] > out.report.largest_error) {
+      out.report.largest_error = out.error[k];
+      out.report.largest_error_at = k;
+    }
     squares += out.error[k] * out.error[k];
   }
   out.report.ray_error = points.empty() ? 0 : std::sqrt(squares / double(points.size()));

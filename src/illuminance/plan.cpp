@@ -93,22 +93,26 @@ class Plan {
     return ColourRange{low_, high_};
   }
 
-  void draw(Image& image, int left, int top, const ColourMap& map) const;
+  /// Draws it with its top left at a place of the picture.
+  void draw(Image& image, int left, int top);
 
  private:
   double valueAt(int x, int y) const;
-  bool isBody(int x, int y) const {
-    return bodies_[cellAt(x, y)] != 0;
-  }
+  bool isBody(int x, int y) const { return bodies_[cellAt(x, y)] != 0; }
   std::size_t cellAt(int x, int y) const {
     const auto column = std::min(std::size_t((x + 0.5) / cell_u_), grid_.columns - 1);
     const auto row = std::min(std::size_t((height_ - y - 0.5) / cell_v_), grid_.rows - 1);
     return row * grid_.columns + column;
   }
-  void drawColours(Image& image, int left, int top, const ColourMap& map,
-                   const std::vector<double>& values) const;
-  void drawLines(Image& image, int left, int top, const std::vector<double>& values) const;
-  void drawValues(Image& image, int left, int top, const ColourMap& map) const;
+  struct Pixels {
+    int left, top, right, bottom;
+  };
+  void drawColours(Image& image, const Pixels& part) const;
+  void drawLines(Image& image) const;
+  void drawValues(Image& image) const;
+  double shownAt(int x, int y) const {
+    return shown_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
+  }
   std::size_t everyOf(double cell, int needed) const {
     return std::size_t(std::max(1.0, std::ceil(double(needed) / cell)));
   }
@@ -124,6 +128,10 @@ class Plan {
   int width_ = 1;
   int height_ = 1;
   double line_step_ = 0;
+  std::vector<double> shown_;  ///< of pixels; NaN: none
+  int left_ = 0;               ///< in the picture
+  int top_ = 0;
+  ColourMap map_;
 };
 
 /// Linear between points that have values; NaN in cells without one.
@@ -150,19 +158,18 @@ double Plan::valueAt(int x, int y) const {
   return weights > 0 ? sum / weights : values_[cellAt(x, y)];
 }
 
-void Plan::drawColours(Image& image, int left, int top, const ColourMap& map,
-                       const std::vector<double>& values) const {
+void Plan::drawColours(Image& image, const Pixels& part) const {
   const ColourRange range{low_, high_};
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      const double value = values[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
+  for (int y = std::max(part.top, 0); y < std::min(part.bottom, height_); ++y) {
+    for (int x = std::max(part.left, 0); x < std::min(part.right, width_); ++x) {
+      const double value = shownAt(x, y);
       if (std::isnan(value)) {
-        if (isBody(x, y)) fillGrey(image, left + x, top + y, 1, 1, kBody);
+        if (isBody(x, y)) fillGrey(image, left_ + x, top_ + y, 1, 1, kBody);
         continue;
       }
       float* p = image.rgba.data() +
-                 (std::size_t(top + y) * std::size_t(image.width) + std::size_t(left + x)) * 4;
-      const Vec3 colour = map.at(range.position(value));
+                 (std::size_t(top_ + y) * std::size_t(image.width) + std::size_t(left_ + x)) * 4;
+      const Vec3 colour = map_.at(range.position(value));
       for (int b = 0; b < 3; ++b) p[b] = float(srgbFromLinear(colour[b]));
       p[3] = 1;
     }
@@ -171,25 +178,24 @@ void Plan::drawColours(Image& image, int left, int top, const ColourMap& map,
 
 /// A pixel is on a line if its value and that of a neighbour are on different sides of a multiple
 /// of the step.
-void Plan::drawLines(Image& image, int left, int top, const std::vector<double>& values) const {
+void Plan::drawLines(Image& image) const {
   if (!(line_step_ > 0)) return;
-  const auto level = [&](int x, int y) {
-    return std::floor(values[std::size_t(y) * std::size_t(width_) + std::size_t(x)] / line_step_);
-  };
+  const auto level = [&](int x, int y) { return std::floor(shownAt(x, y) / line_step_); };
   for (int y = 0; y + 1 < height_; ++y) {
     for (int x = 0; x + 1 < width_; ++x) {
       const double here = level(x, y);
       const double right = level(x + 1, y);
       const double below = level(x, y + 1);
-      const bool crosses = (!std::isnan(right) && right != here) ||
-                           (!std::isnan(below) && below != here);
-      if (!std::isnan(here) && crosses) fillGrey(image, left + x, top + y, 2, 2, kBlack);
+      const bool crosses =
+          (!std::isnan(right) && right != here) || (!std::isnan(below) && below != here);
+      if (!std::isnan(here) && crosses) fillGrey(image, left_ + x, top_ + y, 2, 2, kBlack);
     }
   }
 }
 
-/// Values in the middle of cells, all or each so many across and up, in black or white.
-void Plan::drawValues(Image& image, int left, int top, const ColourMap& map) const {
+/// Values in the middle of cells, all or each so many across and up, in black or white; lines pass
+/// behind them.
+void Plan::drawValues(Image& image) const {
   if (!(high_ >= low_)) return;
   const ColourRange range{low_, high_};
   int widest = std::max(textWidth(valueText(low_), 1), textWidth(valueText(high_), 1));
@@ -202,26 +208,28 @@ void Plan::drawValues(Image& image, int left, int top, const ColourMap& map) con
       const double value = values_[row * grid_.columns + column];
       if (std::isnan(value)) continue;
       const std::string text = valueText(value);
-      const int x = int(std::lround((double(column) + 0.5) * cell_u_));
-      const int y = int(std::lround(height_ - (double(row) + 0.5) * cell_v_));
+      const int x = int(std::lround((double(column) + 0.5) * cell_u_)) - textWidth(text, scale) / 2;
+      const int y =
+          int(std::lround(height_ - (double(row) + 0.5) * cell_v_)) - kCapHeight * scale / 2;
+      drawColours(image, {x - scale, y - scale, x + textWidth(text, scale) + scale,
+                          y + (kCapHeight + 1) * scale});
       constexpr double kBright = 0.2;
-      const bool dark = luminanceOf(map.at(range.position(value))) < kBright;
-      drawText(image, left + x - textWidth(text, scale) / 2, top + y - kCapHeight * scale / 2,
-               scale, text, dark ? kPaper : kBlack);
+      const bool dark = luminanceOf(map_.at(range.position(value))) < kBright;
+      drawText(image, left_ + x, top_ + y, scale, text, dark ? kPaper : kBlack);
     }
   }
 }
 
-void Plan::draw(Image& image, int left, int top, const ColourMap& map) const {
-  std::vector<double> values(std::size_t(width_) * std::size_t(height_));
+void Plan::draw(Image& image, int left, int top) {
+  left_ = left;
+  top_ = top;
+  shown_.clear();
   for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      values[std::size_t(y) * std::size_t(width_) + std::size_t(x)] = valueAt(x, y);
-    }
+    for (int x = 0; x < width_; ++x) shown_.push_back(valueAt(x, y));
   }
-  drawColours(image, left, top, map, values);
-  drawLines(image, left, top, values);
-  drawValues(image, left, top, map);
+  drawColours(image, {0, 0, width_, height_});
+  drawLines(image);
+  drawValues(image);
 }
 
 std::vector<std::string> headingOf(const MeasuringPoints& points, const PointLightValues& light,
@@ -255,7 +263,7 @@ Image illuminancePlan(const MeasuringPoints& points, const PointLightValues& lig
   if (!points.grid) {
     throw InputError(points.name + ": its points are no grid, of which a plan could be drawn");
   }
-  const Plan plan(points, light, first);
+  Plan plan(points, light, first);
   const std::vector<std::string> heading = headingOf(points, light, first, plan.lineStep());
   int width = std::max(plan.width(), kNarrowestPlan);
   for (const std::string& line : heading) width = std::max(width, textWidth(line, kTextScale));
@@ -267,9 +275,8 @@ Image illuminancePlan(const MeasuringPoints& points, const PointLightValues& lig
   for (std::size_t k = 0; k < heading.size(); ++k) {
     drawText(image, kEdge, kEdge + int(k) * kLineHeight, kTextScale, heading[k], kBlack);
   }
-  const ColourMap map;
-  plan.draw(image, (width - plan.width()) / 2, top, map);
-  legend.draw(image, map, plan.range());
+  plan.draw(image, (width - plan.width()) / 2, top);
+  legend.draw(image, ColourMap(), plan.range());
   return image;
 }
 

@@ -297,7 +297,7 @@ MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, d
         "{}: no point of a grid of {:.6g} m lies within its outline; give a smaller spacing", what,
         columns.step));
   }
-  out.normal.assign(out.at.size(), normal);
+  out.normal.assign(out.at.size(), withoutMinusZero(normal));
   return out;
 }
 
