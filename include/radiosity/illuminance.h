@@ -111,7 +111,7 @@ struct IlluminanceOptions {
 
 struct IlluminanceReport {
   DirectLight direct = DirectLight::none;
-  double rays = 0;  ///< of indirect light
+  double rays = 0;            ///< of indirect light
   std::size_t most_rays = 0;  ///< of a point
   /// Standard errors over all light of the point, facing: the largest, and the root mean square.
   double largest_error = 0;
@@ -158,9 +158,9 @@ std::array<Measured, 4> uprightSides(Up up);
 /// "+x" of x_plus, and so on; "" of `facing` and `cylinder`.
 const char* axisOf(Measured what);
 
-/// Illuminance, lx, of irradiance in W/m^2 a band: 683 lm/W times its luminance (Rec. 709) for three
-/// bands; one band is grey, light of 683 lm/W times its value. Errors: InputError for other numbers
-/// of bands.
+/// Illuminance, lx, of irradiance in W/m^2 a band: 683 lm/W times its luminance (Rec. 709) for
+/// three bands; one band is grey, light of 683 lm/W times its value. Errors: InputError for other
+/// numbers of bands.
 double illuminanceOf(std::span<const double> irradiance);
 
 /// Light at points of a solved scene. `irradiance`: N * bands, of the solved patches, W/m^2;

@@ -30,8 +30,9 @@ struct CsvTable {
 };
 
 /// `path`: for messages. `unnamed`: the names of columns, from the first, of a table that may do
-/// without a header: its first line is all numbers then. Errors: InputError that names file and line: no header, one with other
-/// separators, a column twice, a row of another number of fields, quotes that do not end.
+/// without a header: its first line is all numbers then. Errors: InputError that names file and
+/// line: no header, one with other separators, a column twice, a row of another number of fields,
+/// quotes that do not end.
 CsvTable parseCsv(const std::string& path, std::string_view text,
                   std::span<const char* const> unnamed = {});
 /// The same of a file. Errors: as readWholeFile(), too.

@@ -21,10 +21,9 @@ namespace radiosity::cli {
 
 namespace {
 
-constexpr std::array kCommands = {Command::info,    Command::mesh,   Command::factors,
-                                  Command::solve,   Command::gather, Command::heat,
-                                  Command::compare, Command::render, Command::illuminance,
-                                  Command::view};
+constexpr std::array kCommands = {
+    Command::info, Command::mesh,    Command::factors, Command::solve,       Command::gather,
+    Command::heat, Command::compare, Command::render,  Command::illuminance, Command::view};
 
 void addCompareOptions(CLI::App& app, Request& r) {
   app.add_option("B", r.second, "The file to compare with A; none with --gather")->option_text(" ");
@@ -159,7 +158,8 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
 void checkCommandWord(int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
-  const std::string list = "info, mesh, factors, solve, gather, heat, compare, render, illuminance or view";
+  const std::string list =
+      "info, mesh, factors, solve, gather, heat, compare, render, illuminance or view";
   if (argc < 2) {
     throw InputError(
         fmt::format("a subcommand is missing: {}; e.g. radiosity render SCENE -o "

@@ -48,9 +48,10 @@ bool isBeyond(const MeasuringPoints& set, const PatchMesh& mesh) {
 }
 
 [[noreturn]] void refuseSet(const MeasuringPoints& set, const char* where) {
-  throw InputError(fmt::format("{}: all of its {} points {}; check the height and the unit of the "
-                               "scene (metres here)",
-                               set.name, countText(set.size()), where));
+  throw InputError(
+      fmt::format("{}: all of its {} points {}; check the height and the unit of the "
+                  "scene (metres here)",
+                  set.name, countText(set.size()), where));
 }
 
 std::vector<MeasuringPoints> measuringPoints(Session& session, const Scene& scene) {
@@ -109,9 +110,8 @@ void summarizeSet(Report& report, const std::string& key, const MeasuringPoints&
 void summarizeMeasuring(Report& report, const PointLightValues& light, double asked) {
   report.section("measuring", "Measuring");
   report.text("lumens", "lumens",
-              light.bands == 1
-                  ? fmt::format("{:g} a watt of the one band: grey", kLumensPerWatt)
-                  : fmt::format("{:g} a watt of luminance, Rec. 709", kLumensPerWatt));
+              light.bands == 1 ? fmt::format("{:g} a watt of the one band: grey", kLumensPerWatt)
+                               : fmt::format("{:g} a watt of luminance, Rec. 709", kLumensPerWatt));
   FieldLines lines(report);
   IlluminanceReport::describe(lines, light.report);
   if (light.report.direct == DirectLight::hemispheres) {
@@ -122,20 +122,19 @@ void summarizeMeasuring(Report& report, const PointLightValues& light, double as
   }
   if (light.report.largest_error > asked) {
     const std::size_t worst = light.report.largest_error_at;
-    report.line("note",
-                fmt::format("some points are off by more than {} % though they took all rays that "
-                            "a point may have: one of {} lx by {} %",
-                            numberText(100 * asked, 3),
-                            numberText(light.lux(worst, Measured::facing), 3),
-                            numberText(100 * light.report.largest_error, 3)));
+    report.line(
+        "note",
+        fmt::format("some points are off by more than {} % though they took all rays that "
+                    "a point may have: one of {} lx by {} %",
+                    numberText(100 * asked, 3), numberText(light.lux(worst, Measured::facing), 3),
+                    numberText(100 * light.report.largest_error, 3)));
   }
 }
 
 void writeMeasured(std::span<const MeasuringPoints> sets, const PointLightValues& light,
                    OutputSet& files) {
-  files.write(Format::illuminance, "illuminance at points", [&](const std::string& temporary) {
-    writeIlluminance(temporary, sets, light);
-  });
+  files.write(Format::illuminance, "illuminance at points",
+              [&](const std::string& temporary) { writeIlluminance(temporary, sets, light); });
   files.write(Format::png, "plan, lx", [&](const std::string& temporary) {
     std::vector<Image> plans;
     std::size_t first = 0;
@@ -184,8 +183,7 @@ int runIlluminance(Session& session) {
     summarizeSet(session.report, key, sets[k], summary);
     first += sets[k].size();
   }
-  summarizeMeasuring(session.report, light,
-                     session.request.apply(IlluminanceOptions()).tolerance);
+  summarizeMeasuring(session.report, light, session.request.apply(IlluminanceOptions()).tolerance);
   writeMeasured(sets, light, files);
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

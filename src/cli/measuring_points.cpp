@@ -1,7 +1,8 @@
+#include "cli/measuring_points.h"
+
 #include <fmt/format.h>
 
 #include "base/parse.h"
-#include "cli/measuring_points.h"
 
 namespace radiosity::cli {
 

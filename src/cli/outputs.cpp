@@ -35,7 +35,9 @@ const std::vector<Extension>& extensions() {
       {".obj", Format::obj, {mesh}},
       {".vtp", Format::vtp, {mesh, factors, solve, heat}},
       {".csv", Format::surface_table, {heat}},
-      {".h5", Format::results, {mesh, factors, solve, gather, heat, compare, render, illuminance, view}},
+      {".h5",
+       Format::results,
+       {mesh, factors, solve, gather, heat, compare, render, illuminance, view}},
       {".mtx", Format::matrix_market, {factors, solve, render}},
       {".csv", Format::csv, {factors}},
       {".csv", Format::light_csv, {solve}},
@@ -99,14 +101,13 @@ struct InputPath {
 
 std::vector<InputPath> inputsOf(const Request& request) {
   const bool basis_file = request.basis != kBasisOfSurfaces;
-  std::vector<InputPath> inputs = {
-          {"the input itself", request.input},
-          {"the second input", request.second},
-          {"the table of --thermal", request.thermal},
-          {"the table of --rows", request.rows},
-          {"the file of --areas", request.areas},
-          {"the table of --basis", basis_file ? request.basis : ""},
-          {"the file of --materials", request.scene.materials_file}};
+  std::vector<InputPath> inputs = {{"the input itself", request.input},
+                                   {"the second input", request.second},
+                                   {"the table of --thermal", request.thermal},
+                                   {"the table of --rows", request.rows},
+                                   {"the file of --areas", request.areas},
+                                   {"the table of --basis", basis_file ? request.basis : ""},
+                                   {"the file of --materials", request.scene.materials_file}};
   for (const PointsAsked& asked : request.points) {
     if (asked.kind == PointsAsked::Kind::points) {
       inputs.push_back({"the table of --points", asked.text});

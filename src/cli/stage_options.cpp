@@ -94,10 +94,10 @@ void addFactorOptions(CLI::App& app, Request& r) {
   if (app.get_name() == commandName(Command::render) ||
       app.get_name() == commandName(Command::illuminance)) {
     CLI::Option* tolerance = app.get_option("--tolerance");
-    tolerance->description(
-        fmt::format("{}; where elements are shown or points measured and no form factors are written, {} by "
-                    "default",
-                    tolerance->get_description(), FormFactorOptions::kSourceTolerance));
+    tolerance->description(fmt::format(
+        "{}; where elements are shown or points measured and no form factors are written, {} by "
+        "default",
+        tolerance->get_description(), FormFactorOptions::kSourceTolerance));
   }
   addOptionsOf<JournalOptions>(app, r, "Form factors");
 }

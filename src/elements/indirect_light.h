@@ -23,11 +23,7 @@ class ReflectedLight : public FieldLight {
   /// Keeps all by reference.
   ReflectedLight(const ElementSurface& surface, const PointRays& rays, const HemisphereSet& set,
                  const SourceCells& sources, std::span<const Light> lights, std::uint64_t seed)
-      : surface_(surface),
-        rays_(rays),
-        set_(set),
-        light_(sources, lights),
-        seed_(seed) {}
+      : surface_(surface), rays_(rays), set_(set), light_(sources, lights), seed_(seed) {}
   /// Takes the set `more`, kept by reference, if the standard error of as many random rays would be
   /// more than `uneven` of their mean, or if the means of two halves are off by more than `apart`.
   void repeat(const HemisphereSet& more, double uneven, double apart) {

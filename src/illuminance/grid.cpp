@@ -24,8 +24,7 @@ double standardSpacing(double longer, double shorter) {
   return std::min(kLargest, 0.2 * std::pow(5.0, std::log10(d)));
 }
 
-GridLine gridLine(const std::string& what, double side, double other,
-                  std::optional<double> step) {
+GridLine gridLine(const std::string& what, double side, double other, std::optional<double> step) {
   GridLine line;
   if (!step) {
     const double standard = standardSpacing(std::max(side, other), std::min(side, other));
@@ -48,9 +47,10 @@ GridLine gridLine(const std::string& what, double side, double other,
 void requireFewPoints(const std::string& what, const GridLine& across, const GridLine& along) {
   const double points = double(across.count) * double(along.count);
   if (points <= double(kMostGridPoints)) return;
-  throw InputError(fmt::format("{}: a spacing of {:.6g} m makes {:.3g} points; at most {} are "
-                               "evaluated: give a larger one",
-                               what, across.step, points, countText(kMostGridPoints)));
+  throw InputError(
+      fmt::format("{}: a spacing of {:.6g} m makes {:.3g} points; at most {} are "
+                  "evaluated: give a larger one",
+                  what, across.step, points, countText(kMostGridPoints)));
 }
 
 MeasuringPoints pointsOnPlane(const std::array<Vec3, 3>& corners, std::optional<double> spacing) {

@@ -31,9 +31,9 @@ constexpr double kMostlyBacks = 0.6;
 
 void requirePoints(std::span<const Vec3> points, std::span<const Vec3> normals) {
   if (normals.size() != points.size()) {
-    throw InputError(fmt::format(
-        "illuminance: {} points and {} normals were given; give one normal a point", points.size(),
-        normals.size()));
+    throw InputError(
+        fmt::format("illuminance: {} points and {} normals were given; give one normal a point",
+                    points.size(), normals.size()));
   }
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (!isFinite(points[k])) {
@@ -117,8 +117,7 @@ double PointMeter::direct(const SurfacePoint& point, std::size_t k, PointLightVa
 
 /// Rays `first` to `first` + `count` of each set, turned about the normal by a hash of the place.
 void PointMeter::castMore(const SurfacePoint& point, std::size_t first, std::size_t count,
-                          std::array<SetSums, SphereSets::kSets>& sums,
-                          std::size_t& behind) const {
+                          std::array<SetSums, SphereSets::kSets>& sums, std::size_t& behind) const {
   Hash hash;
   hash.bytes(&point.place, sizeof point.place);
   hash.bytes(&options_.seed, sizeof options_.seed);

@@ -74,10 +74,9 @@ class Plan {
       low_ = std::min(low_, value);
       high_ = std::max(high_, value);
     }
-    const double scale =
-        std::min({kWidest / (double(grid_.columns) * grid_.step_u),
-                  kHighest / (double(grid_.rows) * grid_.step_v),
-                  kLargestCell / std::max(grid_.step_u, grid_.step_v)});
+    const double scale = std::min({kWidest / (double(grid_.columns) * grid_.step_u),
+                                   kHighest / (double(grid_.rows) * grid_.step_v),
+                                   kLargestCell / std::max(grid_.step_u, grid_.step_v)});
     cell_u_ = scale * grid_.step_u;
     cell_v_ = scale * grid_.step_v;
     width_ = std::max(1, int(std::lround(double(grid_.columns) * cell_u_)));

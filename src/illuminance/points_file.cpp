@@ -73,8 +73,8 @@ MeasuringPoints readMeasuringPoints(const std::string& path, Up up) {
     out.at.push_back(vectorIn(table, row, columns, 0));
     const Vec3 normal = columns.normals ? vectorIn(table, row, columns, 3) : upVector(up);
     if (!(glm::length(normal) > 0)) {
-      throw InputError(fmt::format("{}:{}: the normal is 0,0,0, which faces nowhere", path,
-                                   row.line));
+      throw InputError(
+          fmt::format("{}:{}: the normal is 0,0,0, which faces nowhere", path, row.line));
     }
     out.normal.push_back(glm::normalize(normal));
   }

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "base/geometry/plane_frame.h"
 #include "base/finite.h"
+#include "base/geometry/plane_frame.h"
 #include "illuminance/directions.h"
 #include "illuminance/grid.h"
 #include "scene/surface_names.h"
@@ -93,9 +93,8 @@ bool isTwoSided(const Scene& scene, const Faces& faces) {
 
 /// The convex hull, counter-clockwise (A. Andrew, Inf. Proc. Letters 9(5), 1979).
 std::vector<Vec2> hullOf(std::vector<Vec2> points) {
-  std::ranges::sort(points, [](const Vec2& a, const Vec2& b) {
-    return a.x != b.x ? a.x < b.x : a.y < b.y;
-  });
+  std::ranges::sort(
+      points, [](const Vec2& a, const Vec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   std::vector<Vec2> hull;
   for (int half = 0; half < 2; ++half) {
     const std::size_t start = hull.size();
@@ -216,8 +215,8 @@ PlanarFaces planarFaces(const Scene& scene, const std::string& name) {
   PlanarFaces out;
   out.faces = facesOf(scene, surfaces);
   if (out.faces.number.empty()) {
-    throw InputError(fmt::format("grid: {} has no area; name another surface, or give a plane",
-                                 name));
+    throw InputError(
+        fmt::format("grid: {} has no area; name another surface, or give a plane", name));
   }
   std::optional<Vec3> normal = planeOf(scene, out.faces);
   if (!normal) {
@@ -230,8 +229,8 @@ PlanarFaces planarFaces(const Scene& scene, const std::string& name) {
           "a plane by three corners",
           name));
     }
-    out.notes.push_back({Severity::info,
-                         fmt::format("grid: {} is not planar; its points stand over the {} of its "
+    out.notes.push_back(
+        {Severity::info, fmt::format("grid: {} is not planar; its points stand over the {} of its "
                                      "{} faces that face up",
                                      name, out.faces.number.size(), all)});
   }
@@ -275,15 +274,15 @@ MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, d
   out.name = height == 0 ? name : fmt::format("{} + {:.6g} m", name, std::abs(height));
   if (height < 0) out.name = fmt::format("{} - {:.6g} m", name, -height);
   out.notes = std::move(planar.notes);
-  out.grid = MeasuringPoints::Grid{
-      .first = area.frame.lift(area.low + Vec2(columns.first, rows.first)) +
-               std::abs(height) * normal,
-      .u = area.frame.u,
-      .v = area.frame.v,
-      .step_u = columns.step,
-      .step_v = rows.step,
-      .columns = columns.count,
-      .rows = rows.count};
+  out.grid =
+      MeasuringPoints::Grid{.first = area.frame.lift(area.low + Vec2(columns.first, rows.first)) +
+                                     std::abs(height) * normal,
+                            .u = area.frame.u,
+                            .v = area.frame.v,
+                            .step_u = columns.step,
+                            .step_v = rows.step,
+                            .columns = columns.count,
+                            .rows = rows.count};
   for (std::size_t cell = 0; cell < held.size(); ++cell) {
     if (held[cell] == 0) continue;
     const double column = double(cell % columns.count);

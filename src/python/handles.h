@@ -64,6 +64,7 @@ void bindScene(pybind11::module_& module);
 void bindFactors(pybind11::module_& module);
 void bindLight(pybind11::module_& module);
 void bindGather(pybind11::module_& module);
+void bindPoints(pybind11::module_& module);
 
 /// The mesh of form factors. Errors: InputError if they are a matrix alone; it names `asks`, the
 /// feature that needs the mesh.

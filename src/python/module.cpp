@@ -103,6 +103,7 @@ py::list optionsOf(const std::string& stage) {
   if (stage == "solve") return described(SolveOptions());
   if (stage == "gather") return described(GatherOptions());
   if (stage == "heat") return described(HeatOptions());
+  if (stage == "illuminance") return described(IlluminanceOptions());
   if (stage == "lights") return describedLights();
   throw InputError("no stage has the name " + stage);
 }
@@ -148,6 +149,7 @@ PYBIND11_MODULE(_core, module) {
   python::bindScene(module);
   python::bindFactors(module);
   python::bindLight(module);
+  python::bindPoints(module);
   python::bindGather(module);
   module.def("read", &python::read);
   module.def("save", &python::save);

@@ -13,8 +13,7 @@ constexpr std::array kCube = {Measured::x_plus,  Measured::x_minus, Measured::y_
                               Measured::y_minus, Measured::z_plus,  Measured::z_minus};
 
 std::string illuminanceHeader(const PointLightValues& light) {
-  std::string header =
-      "x_m,y_m,z_m,nx,ny,nz,illuminance_lx,direct_lx,indirect_lx,cylindrical_lx";
+  std::string header = "x_m,y_m,z_m,nx,ny,nz,illuminance_lx,direct_lx,indirect_lx,cylindrical_lx";
   for (const Measured face : kCube) header += fmt::format(",facing_{}_lx", axisOf(face));
   for (const Measured side : uprightSides(light.up)) {
     header += fmt::format(",semicylindrical_{}_lx", axisOf(side));
@@ -30,9 +29,8 @@ std::string illuminanceHeader(const PointLightValues& light) {
 
 std::string illuminanceCells(const PointLightValues& light, std::size_t k) {
   using enum Measured;
-  std::string cells =
-      fmt::format(",{},{},{},{}", light.lux(k, facing), light.directLux(k, facing),
-                  light.indirectLux(k, facing), light.lux(k, cylinder));
+  std::string cells = fmt::format(",{},{},{},{}", light.lux(k, facing), light.directLux(k, facing),
+                                  light.indirectLux(k, facing), light.lux(k, cylinder));
   for (const Measured face : kCube) cells += fmt::format(",{}", light.lux(k, face));
   for (const Measured side : uprightSides(light.up)) {
     cells += fmt::format(",{}", light.semicylindricalLux(k, side));

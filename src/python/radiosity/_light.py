@@ -10,6 +10,7 @@ from . import _core
 from ._arrays import Fixed, numbers, require
 from ._core import InputError, RunError
 from ._factors import FormFactors
+from ._illuminance import Illuminance, measured
 from ._mesh import Mesh
 from ._notes import warn
 from ._options import more, takes_options
@@ -64,6 +65,29 @@ class Solution(Fixed):
     def form_factors(self) -> FormFactors:
         """The form factors that it was solved on."""
         return self._form_factors
+
+    @takes_options("illuminance")
+    def illuminance(self, points: Any, normals: Any = None, *, progress: Progress = None,
+                    **others: Any) -> Illuminance:
+        """Light at P points anywhere in the scene, W/m^2 a band and lux.
+
+        points: (P, 3), metres. normals: the way that each faces, (P, 3), of any length but 0, or (3,)
+        for all; default: up. Direct light is exact where an emitter is seen whole or not at all, the
+        rest is by rays, as many as the tolerance takes; the error of each point is told.
+
+        Errors: InputError naming the point or the normal.
+
+        >>> F = rad.form_factors(rad.mesh(rad.load("data/furnace-cube.obj"), patches=24), tolerance=1e-6)
+        >>> light = rad.solve(F, reflectance=0.5, emission=[1.0] * 24, tolerance=1e-9)
+        >>> middle = light.form_factors.mesh.vertices.mean(axis=0)
+        >>> found = light.illuminance([middle])
+        >>> found.total.shape, float(found.total[0].round(6)), float(found.lux[0].round(3))  # 683 lm/W
+        ((1,), 2.0, 1366.0)
+        """
+        if self.form_factors.mesh is None:
+            raise InputError("illuminance: these form factors are a matrix without a mesh; use those of "
+                             "form_factors(mesh)")
+        return measured(self._handle, self._shape[1:], points, normals, more("illuminance", others), progress)
 
     def __repr__(self) -> str:
         return f"<Solution of shape {self._shape}, {self.summary['status']}>"

@@ -1,0 +1,48 @@
+// Light at measuring points.
+#include "arrays.h"
+#include "handles.h"
+#include "long_call.h"
+#include "options.h"
+
+namespace radiosity::python {
+namespace {
+
+/// (points, kMeasured, bands).
+py::array measuredRows(std::vector<double>&& values, std::size_t points, int bands) {
+  const std::vector<py::ssize_t> shape{py::ssize_t(points), py::ssize_t(kMeasured), bands};
+  return taken(std::move(values)).reshape(shape);
+}
+
+/// `normals`: none: up.
+py::dict illuminance(const SolutionHandle& light, const Array<double>& points,
+                     const std::optional<Array<double>>& normals, const py::dict& given,
+                     const py::object& report) {
+  const auto options = optionsFrom<IlluminanceOptions>(given);
+  const MeshHandle& mesh = meshOf(*light.factors, "illuminance");
+  const Up up = mesh.scene ? mesh.scene->up : Up::y;
+  const std::span<const Vec3> at = vectorsOf(points);
+  const std::vector<Vec3> upward(normals ? 0 : at.size(),
+                                 up == Up::y ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
+  const std::span<const Vec3> ways = normals ? vectorsOf(*normals) : std::span(upward);
+  PointLightValues values;
+  runLong(report, [&](Progress& progress) {
+    values = lightAtPoints(mesh.result.mesh, *light.materials, light.solution.irradiance, {}, at,
+                           ways, up, options, progress);
+  });
+  py::dict out;
+  out["rays"] = values.report.rays;
+  out["direct"] = measuredRows(std::move(values.direct), at.size(), values.bands);
+  out["indirect"] = measuredRows(std::move(values.indirect), at.size(), values.bands);
+  out["error"] = taken(std::move(values.error));
+  out["inside"] = taken(std::move(values.inside));
+  return out;
+}
+
+}  // namespace
+
+void bindPoints(py::module_& module) {
+  module.attr("lumens_per_watt") = kLumensPerWatt;
+  module.def("illuminance", &illuminance);
+}
+
+}  // namespace radiosity::python
