@@ -41,7 +41,6 @@ py::dict illuminance(const SolutionHandle& light, const Array<double>& points,
 }  // namespace
 
 void bindPoints(py::module_& module) {
-  module.attr("lumens_per_watt") = kLumensPerWatt;
   module.def("illuminance", &illuminance);
 }
 

@@ -142,8 +142,10 @@ class Illuminance(CliTest):
         report = self.report("illuminance", scene, "--grid", "floor:.8:.5")["illuminance"]
         self.assertEqual([report["points"], report["in_bodies"]], [64, 4])
         self.assertGreater(report["lowest_lx"], 0)
-        self.refuse("illuminance", scene, "--plane", ".2,.5,.8:.8,.5,.8:.8,.5,.2:.2",
-                    words=["plane: all of its 9 points stand in bodies"])
+        run = self.run_program("illuminance", scene, "--plane", ".2,.5,.8:.8,.5,.8:.8,.5,.2:.2", "-o", "body.csv",
+                               code=2)
+        self.assertIn("radiosity: plane: all of its 9 points stand in bodies", run.err)
+        self.assertNotIn("body.csv", self.files())
 
     def test_what_cannot_be_measured_is_refused(self):
         scene = self.write_room(4, 4, 3, 1, reflectance=.5, radiance=3)
@@ -166,9 +168,8 @@ class Illuminance(CliTest):
         self.write("points.csv", "0,1,0\n")
         self.refuse("illuminance", scene, "--points", "points.csv", "-o", "plan.png",
                     words=["plan.png: a plan is of a grid"])
-        self.write("dark.mtl", materials(.5))
-        self.refuse("illuminance", DATA / "furnace-cube.obj", "--set", "wall.radiance=0", "--grid", "floor",
-                    words=[])
+        self.refuse("illuminance", DATA / "furnace-cube.obj", "--set", "wall.radiance=0", "--grid", "cube_floor",
+                    words=["nothing in the scene emits"])
 
 
 if __name__ == "__main__":

@@ -127,6 +127,40 @@ def test_heat_of_a_name_without_temperature_is_adiabatic():
     assert 300 < rows["left_wall/red"]["temperature"] < 1200
 
 
+def test_points_get_what_the_patches_that_they_see_send(cornell):
+    light = rad.solve(cornell)
+    mesh = cornell.mesh
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    points = low + (high - low) * [[.5, .8, .5], [.2, .6, .8], [.8, .6, .3]]
+    found = light.illuminance(points, [0, 1, 0])
+    seen = rad.view_factors_from(mesh, points, [0, 1, 0])
+    assert found.total.shape == found.direct.shape == (3, 3) and found.cube_lux.shape == (3, 6)
+    assert np.array_equal(found.in_body, [False] * 3) and (found.error <= 0.01).all()
+    # Exact, 2e-6 of the scene's diagonal off its place, the lamp a tenth of it away or more.
+    assert np.allclose(found.direct, seen @ light.emission, rtol=1e-4)
+    # Rays, to 1%, on sources that are finer than 150 patches.
+    assert np.allclose(found.total, seen @ light.radiosity, rtol=0.02)
+    assert np.allclose(found.lux, 683 * found.total @ [.2126, .7152, .0722])
+    assert np.allclose(found.direct_lux + found.indirect_lux, found.lux)
+    assert np.allclose(found.lux, found.cube_lux[:, 2], rtol=0.02)  # +y
+    assert np.array_equal(light.illuminance(points).total, found.total)  # up
+
+
+def test_points_have_the_bands_and_lamps_of_the_solution(cube):
+    middle = [cube.mesh.vertices.mean(axis=0)]
+    lamps = rad.solve(cube, 0.5, np.ones((24, 2, 3)) * [1, 2, 3]).illuminance(middle)
+    # B = E / (1 - rho); sources in single precision.
+    assert np.allclose(lamps.total, [[[2, 4, 6]] * 2], rtol=1e-5) and lamps.lux is None
+    grey = rad.solve(cube, 0.5, np.ones(24)).illuminance(middle, tolerance=0.05)
+    assert grey.total.shape == (1,) and np.allclose(grey.cylindrical_lux, 2 * 683, rtol=1e-5)
+    with pytest.raises(rad.InputError, match="tolerance: 2"):
+        rad.solve(cube, 0.5, np.ones(24)).illuminance(middle, tolerance=2)
+    with pytest.raises(rad.InputError, match="without a mesh"):
+        rad.solve(rad.from_csr([[0, 1], [1, 0]], [1, 1]), 0.5, [1, 1]).illuminance(middle)
+    with pytest.raises(rad.InputError, match="normal 0 has no direction"):
+        rad.solve(cube, 0.5, np.ones(24)).illuminance(middle, [0, 0, 0])
+
+
 def rectangle_above(a, b, c):
     """Howell B-3: from a small surface to a parallel a x b rectangle, a corner of which is c above it."""
     x, y = a / c, b / c

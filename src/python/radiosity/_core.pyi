@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 version: str
-lumens_per_watt: float
 
 _Report = Optional[Callable[[str, int, int, str], None]]
 _Floats = NDArray[np.float64]

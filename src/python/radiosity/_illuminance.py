@@ -10,6 +10,7 @@ from . import _core
 from ._arrays import numbers
 from ._progress import Progress, reporting
 
+_LUMENS = 683  # a watt of luminance
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear Rec. 709
 
 
@@ -36,8 +37,8 @@ class Illuminance(NamedTuple):
 def _lux(values: np.ndarray) -> Optional[np.ndarray]:
     """Of irradiance whose last axis are the bands."""
     if values.shape[-1] == 3:
-        return _core.lumens_per_watt * (values @ _LUMINANCE)
-    return _core.lumens_per_watt * values[..., 0] if values.shape[-1] == 1 else None
+        return _LUMENS * (values @ _LUMINANCE)
+    return _LUMENS * values[..., 0] if values.shape[-1] == 1 else None
 
 
 def measured(light: "_core.Solution", bands: Tuple[int, ...], points: Any, normals: Any, options: dict,
@@ -53,10 +54,10 @@ def measured(light: "_core.Solution", bands: Tuple[int, ...], points: Any, norma
     direct, indirect = found["direct"], found["indirect"]
     total = direct + indirect
     shape = (len(places), *bands)
-    lamps = len(bands) == 2
-    lux = [None] * 5
-    if not lamps and _lux(total) is not None:
-        every = _lux(total)
-        lux = [every[:, 0], _lux(direct)[:, 0], _lux(indirect)[:, 0], every[:, 1:7], every[:, 7]]
+    lux = [None if len(bands) == 2 else _lux(values) for values in (total, direct, indirect)]
+    facing = [None if values is None else values[:, 0] for values in lux]
+    cube = None if lux[0] is None else lux[0][:, 1:7]
+    cylinder = None if lux[0] is None else lux[0][:, 7]
     return Illuminance(total[:, 0].reshape(shape), direct[:, 0].reshape(shape), indirect[:, 0].reshape(shape),
-                       *lux, found["error"], found["inside"].astype(bool))
+                       facing[0], facing[1], facing[2], cube, cylinder, found["error"],
+                       found["inside"].astype(bool))
