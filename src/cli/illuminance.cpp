@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/figure_text.h"
@@ -92,8 +93,11 @@ void summarizeSet(Report& report, const std::string& key, const MeasuringPoints&
     const double spacing[] = {set.grid->step_u, set.grid->step_v};
     report.bands("spacing_m", "spacing", spacing, "m");
   }
+  constexpr double kShown = 1e6;
   const Vec3& n = set.normal.front();
-  const double facing[] = {n.x, n.y, n.z};
+  const double facing[] = {std::round(n.x * kShown) / kShown + 0.0,
+                           std::round(n.y * kShown) / kShown + 0.0,
+                           std::round(n.z * kShown) / kShown + 0.0};
   if (set.grid || set.size() == 1) report.bands("facing", "facing", facing, "");
   report.number("mean_lx", "mean", s.mean, "lx");
   report.number("lowest_lx", "minimum", s.lowest, "lx");

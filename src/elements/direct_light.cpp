@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 
@@ -54,6 +55,19 @@ double unblockedFactor(const Emitter& emitter, const Vec3& eye, const Vec3& norm
   }
   const FlatPolygon target = aboveHorizon(emitter, normal, glm::dot(normal, eye));
   return target.count < 3 ? 0.0 : pointToPolygon(eye, normal, target.outline());
+}
+
+/// The first points of a sequence.
+std::vector<std::array<float, 3>> aimsOf(std::uint64_t seed) {
+  std::array<std::array<float, kMoreLooks>, kDimensions> points;
+  PointArrays out{};
+  for (std::size_t d = 0; d < kDimensions; ++d) out[d] = points[d].data();
+  SobolPoints().points(0, kMoreLooks, seed, out);
+  std::vector<std::array<float, 3>> aims;
+  for (std::size_t k = 0; k < kMoreLooks; ++k) {
+    aims.push_back({points[0][k], points[1][k], points[2][k]});
+  }
+  return aims;
 }
 
 }  // namespace
@@ -117,16 +131,14 @@ EmitterLight::EmitterLight(const PatchMesh& mesh, const PatchMaterials& material
   for (Index o = 0; o < bodies.size(); ++o) {
     for (const Index f : bodies[o].facets) own_[f].push_back(o);
   }
-  std::array<std::array<float, kMoreLooks>, kDimensions> points;
-  PointArrays out{};
-  for (std::size_t d = 0; d < kDimensions; ++d) out[d] = points[d].data();
-  SobolPoints().points(0, kMoreLooks, 0, out);
-  for (std::size_t k = 0; k < kMoreLooks; ++k) {
-    aims_.push_back({points[0][k], points[1][k], points[2][k]});
-  }
+  aims_ = aimsOf(0);
   // Sorted by the number that chooses the emitter.
   std::sort(aims_.begin(), aims_.begin() + kLooks);
   std::sort(aims_.begin() + kLooks, aims_.end());
+  for (std::size_t set = 0; set < kFineSets; ++set) {
+    fine_aims_[set] = aimsOf(set + 1);
+    std::ranges::sort(fine_aims_[set]);
+  }
 }
 
 std::shared_ptr<const ElementLights> EmitterLight::lightsOf(const ElementShape& shape,
@@ -305,16 +317,15 @@ double EmitterLight::clipped(const SurfacePoint& point, const Lights& lights,
 
 /// Adds rays until there are `count`, aimed in proportion to the unblocked light, so that each
 /// stands for nearly the same light.
-void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, std::size_t count,
-                        Looks& looks) const {
+void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, const Aims& aims,
+                        std::size_t count, Looks& looks) const {
   const Vec3 eye = scaled(point.inner);
   const std::size_t first = looks.count;
   std::optional<EmitterAim> aim;
   std::size_t at = 0;
   for (std::size_t k = first; k < count; ++k) {
     const std::size_t before = at;
-    while (at + 1 < light.shares.size() &&
-           double(aims_[k][0]) * light.sum >= light.shares[at].end) {
+    while (at + 1 < light.shares.size() && double(aims[k][0]) * light.sum >= light.shares[at].end) {
       ++at;
     }
     const Unblocked::Share& share = light.shares[at];
@@ -324,7 +335,7 @@ void EmitterLight::look(const SurfacePoint& point, const Unblocked& light, std::
       const bool few = given * double(count - first) < kFewLooks * light.sum;
       aim.emplace(emitter, eye, point.normal, few || isFar(emitter, eye));
     }
-    const AimedPlace place = aim->at(aims_[k][1], aims_[k][2]);
+    const AimedPlace place = aim->at(aims[k][1], aims[k][2]);
     looks.to[k] = place.at / elements_.scale + elements_.middle;
     looks.weight[k] = place.factor / share.factor;
     looks.polygon[k] = elements_.facets[emitter.facet].polygon;
@@ -395,6 +406,18 @@ double EmitterLight::addSeen(const Unblocked& light, const Looks& looks,
   return off * off;
 }
 
+/// Of those that leave above the horizon.
+bool EmitterLight::onlySomeArrive(const Looks& looks) {
+  bool some = false;
+  bool all = true;
+  for (std::size_t k = 0; k < looks.count; ++k) {
+    if (!(looks.weight[k] > 0)) continue;
+    some = some || looks.seen[k] != 0;
+    all = all && looks.seen[k] != 0;
+  }
+  return some && !all;
+}
+
 /// Most points see all looks arrive or none; those in a penumbra take more.
 double EmitterLight::byRays(const SurfacePoint& point, const Lights* lights,
                             std::span<double> out) const {
@@ -407,16 +430,56 @@ double EmitterLight::byRays(const SurfacePoint& point, const Lights* lights,
   sumUnblocked(point, lights, light);
   if (!(light.sum > 0)) return 0;
   looks.count = 0;
-  look(point, light, kLooks, looks);
-  bool some = false;
-  bool all = true;
-  for (std::size_t k = 0; k < kLooks; ++k) {
-    if (!(looks.weight[k] > 0)) continue;  // below the horizon
-    some = some || looks.seen[k] != 0;
-    all = all && looks.seen[k] != 0;
-  }
-  if (some && !all) look(point, light, kMoreLooks, looks);
+  look(point, light, aims_, kLooks, looks);
+  if (onlySomeArrive(looks)) look(point, light, aims_, kMoreLooks, looks);
   return addSeen(light, looks, out);
+}
+
+double EmitterLight::irradianceWithin(const SurfacePoint& point, double tolerance,
+                                      std::span<double> out) const {
+  thread_local Unblocked light;
+  thread_local Looks looks;
+  const double noise =
+      aimed_.lights().empty()
+          ? 0.0
+          : aimed_.add({point.inner, point.normal, surface_.owners[point.owners]}, out);
+  light.shares.clear();
+  light.whole.assign(out.size(), 0.0);
+  light.sum = 0;
+  sumUnblocked(point, nullptr, light);
+  if (!(light.sum > 0)) return noise;
+  looks.count = 0;
+  look(point, light, aims_, kLooks, looks);
+  if (!onlySomeArrive(looks)) return noise + addSeen(light, looks, out);
+  return noise + finely(point, light, tolerance, out);
+}
+
+/// The mean of sets of rays, and the square of its standard error over all bands.
+double EmitterLight::finely(const SurfacePoint& point, const Unblocked& light, double tolerance,
+                            std::span<double> out) const {
+  constexpr std::size_t kFewestSets = 4;
+  thread_local Looks looks;
+  std::vector<double> of_sets(out.size(), 0.0);
+  double sum = 0;
+  double squares = 0;
+  double square_error = 0;
+  std::size_t sets = 0;
+  while (sets < kFineSets) {
+    looks.count = 0;
+    look(point, light, fine_aims_[sets], kMoreLooks, looks);
+    const double before = std::accumulate(of_sets.begin(), of_sets.end(), 0.0);
+    addSeen(light, looks, of_sets);
+    const double found = std::accumulate(of_sets.begin(), of_sets.end(), 0.0) - before;
+    ++sets;
+    sum += found;
+    squares += found * found;
+    if (sets < kFewestSets) continue;
+    const auto n = double(sets);
+    square_error = std::max(0.0, squares - sum * sum / n) / (n * (n - 1));
+    if (square_error <= tolerance * tolerance * sum * sum / (n * n)) break;
+  }
+  for (std::size_t b = 0; b < out.size(); ++b) out[b] += of_sets[b] / double(sets);
+  return square_error;
 }
 
 }  // namespace radiosity

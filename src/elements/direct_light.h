@@ -46,6 +46,12 @@ class EmitterLight : public FieldLight {
   double irradiance(const SurfacePoint& point, const ElementLights* lights,
                     std::span<double> out) const override;
 
+  /// The same at a point by itself, whatever element it is on: where only some rays to the emitters
+  /// arrive, it takes more sets of them, each spread by itself, until the standard error of their
+  /// mean is `tolerance` of it, or all kFineSets.
+  double irradianceWithin(const SurfacePoint& point, double tolerance, std::span<double> out) const;
+  static constexpr std::size_t kFineSets = 16;
+
   /// The number of points from which rays were cast.
   std::size_t byRays() const { return by_rays_; }
 
@@ -64,8 +70,12 @@ class EmitterLight : public FieldLight {
   bool ownsOccluder(Index owners, Index occluder) const;
   double clipped(const SurfacePoint& point, const Lights& lights, std::span<double> out) const;
   void sumUnblocked(const SurfacePoint& point, const Lights* lights, Unblocked& light) const;
-  void look(const SurfacePoint& point, const Unblocked& light, std::size_t count,
+  using Aims = std::vector<std::array<float, 3>>;  ///< of rays, in [0, 1)
+  void look(const SurfacePoint& point, const Unblocked& light, const Aims& aims, std::size_t count,
             Looks& looks) const;
+  double finely(const SurfacePoint& point, const Unblocked& light, double tolerance,
+                std::span<double> out) const;
+  static bool onlySomeArrive(const Looks& looks);
   double addSeen(const Unblocked& light, const Looks& looks, std::span<double> out) const;
   double byRays(const SurfacePoint& point, const Lights* lights, std::span<double> out) const;
 
@@ -78,9 +88,10 @@ class EmitterLight : public FieldLight {
   const PointRays& rays_;
   OccluderTree tree_;
   VisibilityKernels kernels_;
-  std::vector<Index> facet_of_patch_;       ///< N; kNone
-  std::vector<std::vector<Index>> own_;     ///< by facet: the occluders of which it is a part
-  std::vector<std::array<float, 3>> aims_;  ///< of the rays, in [0, 1)
+  std::vector<Index> facet_of_patch_;    ///< N; kNone
+  std::vector<std::vector<Index>> own_;  ///< by facet: the occluders of which it is a part
+  Aims aims_;
+  std::array<Aims, kFineSets> fine_aims_;
   mutable std::atomic<std::size_t> by_rays_ = 0;
 };
 

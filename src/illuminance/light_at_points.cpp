@@ -29,6 +29,9 @@ constexpr double kOffSurface = 2e-6;
 /// behind an endless sheet it is a half.
 constexpr double kMostlyBacks = 0.6;
 
+/// Of the tolerance, what direct light takes where it is found by rays.
+constexpr double kShareOfDirect = 0.5;
+
 void requirePoints(std::span<const Vec3> points, std::span<const Vec3> normals) {
   if (normals.size() != points.size()) {
     throw InputError(
@@ -77,7 +80,7 @@ class PointMeter {
   std::span<double> rowOf(std::vector<double>& values, std::size_t point, std::size_t what) const {
     return std::span(values).subspan((point * kMeasured + what) * bands_, bands_);
   }
-  double addDirect(SurfacePoint point, const Vec3& normal, std::span<double> sum) const;
+  void addDirect(SurfacePoint point, const Vec3& normal, std::span<double> sum) const;
   double direct(const SurfacePoint& point, std::size_t k, PointLightValues& out) const;
   void castMore(const SurfacePoint& point, std::size_t first, std::size_t count,
                 std::array<SetSums, SphereSets::kSets>& sums, std::size_t& behind) const;
@@ -94,17 +97,17 @@ class PointMeter {
   std::array<Vec3, kUprights> uprights_;
 };
 
-/// Returns the square of the standard error, summed over the bands.
-double PointMeter::addDirect(SurfacePoint point, const Vec3& normal, std::span<double> sum) const {
-  if (sources_.emitterLight() == nullptr) return 0;
+void PointMeter::addDirect(SurfacePoint point, const Vec3& normal, std::span<double> sum) const {
   point.normal = normal;
-  return sources_.emitterLight()->irradiance(point, nullptr, sum);
+  sources_.emitterLight()->irradiance(point, nullptr, sum);
 }
 
 /// Returns the standard error of what falls on the point, facing, as brightness.
 double PointMeter::direct(const SurfacePoint& point, std::size_t k, PointLightValues& out) const {
+  const EmitterLight* emitters = sources_.emitterLight();
+  if (emitters == nullptr) return 0;
   const std::span<double> facing = rowOf(out.direct, k, 0);
-  const double square = addDirect(point, point.normal, facing);
+  const double square = emitters->irradianceWithin(point, kShareOfDirect * options_.tolerance, facing);
   for (std::size_t face = 0; face < kCubeFaces; ++face) {
     addDirect(point, cube_[face], rowOf(out.direct, k, 1 + face));
   }
@@ -194,7 +197,8 @@ std::size_t PointMeter::measure(const Vec3& at, const Vec3& normal, std::size_t 
                   double(SphereSets::kSets);
     }
     error = errorOf(sums);
-    if (error <= options_.tolerance * (direct_light + indirect)) break;
+    const double allowed = options_.tolerance * (direct_light + indirect);
+    if (error * error <= std::max(allowed * allowed - off * off, 0.25 * allowed * allowed)) break;
   }
   for (std::size_t what = 0; what < kMeasured; ++what) {
     const std::span<double> row = rowOf(out.indirect, k, what);

@@ -15,8 +15,10 @@
 namespace radiosity {
 namespace {
 
-/// Faces are in one plane if no corner is further off it than this share of their size.
-constexpr double kFlat = 1e-4;
+/// Faces are in one plane if no corner is further off it than this share of their size: walls of
+/// measured rooms are bent by half a percent. What is bent by more than kBent is told.
+constexpr double kFlat = 0.01;
+constexpr double kBent = 1e-5;
 /// A rectangle along other edges has to be smaller by this, so that squares keep to the axes.
 constexpr double kSmaller = 1 - 1e-6;
 
@@ -42,25 +44,37 @@ Faces facesOf(const Scene& scene, const std::vector<Index>& surfaces) {
   return faces;
 }
 
-/// The unit normal of the plane that all faces are in, of those turned both ways that of the
-/// largest face; none if they are in several planes.
-std::optional<Vec3> planeOf(const Scene& scene, const Faces& faces) {
-  const auto largest = std::ranges::max_element(
+/// The plane that faces are in: their mean normal, of those turned both ways as the largest, and
+/// the corner that is foremost.
+struct SurfacePlane {
+  Vec3 normal{0.0};  ///< unit
+  double front = 0;  ///< dot(normal, x) of the foremost corner, ...
+  double back = 0;   ///< ... and of the one furthest behind
+  bool isFlat(double size) const { return front - back <= kFlat * size; }
+};
+
+/// None if they are in several planes.
+std::optional<SurfacePlane> planeOf(const Scene& scene, const Faces& faces) {
+  const Vec3 largest = *std::ranges::max_element(
       faces.area, {}, [](const Vec3& area) { return glm::dot(area, area); });
-  const Vec3 normal = glm::normalize(*largest);
-  const Vec3 origin =
-      scene.vertices[scene.face(faces.number[std::size_t(largest - faces.area.begin())])[0]];
+  Vec3 sum(0.0);
+  for (const Vec3& area : faces.area) sum += glm::dot(area, largest) < 0 ? -area : area;
+  SurfacePlane plane;
+  plane.normal = glm::normalize(sum);
+  plane.front = -std::numeric_limits<double>::infinity();
+  plane.back = -plane.front;
+  const Vec3 origin = scene.vertices[scene.face(faces.number[0])[0]];
   double size = 0;
-  double off = 0;
   for (const std::size_t f : faces.number) {
     for (const Index corner : scene.face(f)) {
-      const Vec3 from = scene.vertices[corner] - origin;
-      size = std::max(size, glm::length(from));
-      off = std::max(off, std::abs(glm::dot(from, normal)));
+      const Vec3& at = scene.vertices[corner];
+      size = std::max(size, glm::distance(at, origin));
+      plane.front = std::max(plane.front, glm::dot(plane.normal, at));
+      plane.back = std::min(plane.back, glm::dot(plane.normal, at));
     }
   }
-  if (off > kFlat * size) return std::nullopt;
-  return normal;
+  if (!plane.isFlat(size)) return std::nullopt;
+  return plane;
 }
 
 /// Of faces that are turned both ways, those that face as `normal` does, or the other way.
@@ -204,11 +218,11 @@ void mark(const std::vector<Vec2>& outline, const PlaneArea& area, const GridLin
 
 struct PlanarFaces {
   Faces faces;
-  Vec3 normal{0.0};
+  SurfacePlane plane;  ///< its normal is the way that the grid faces
   std::vector<Note> notes;
 };
 
-/// The faces that are meant, and the way that the grid faces.
+/// The faces that are meant.
 PlanarFaces planarFaces(const Scene& scene, const std::string& name) {
   const std::vector<Index> surfaces = surfacesMeant(scene, name);
   if (surfaces.empty()) throw InputError("grid: " + unknownNameText(scene, name));
@@ -218,12 +232,12 @@ PlanarFaces planarFaces(const Scene& scene, const std::string& name) {
     throw InputError(
         fmt::format("grid: {} has no area; name another surface, or give a plane", name));
   }
-  std::optional<Vec3> normal = planeOf(scene, out.faces);
-  if (!normal) {
+  std::optional<SurfacePlane> plane = planeOf(scene, out.faces);
+  if (!plane) {
     const std::size_t all = out.faces.number.size();
     out.faces = facingUp(scene, out.faces);
-    if (!out.faces.number.empty()) normal = planeOf(scene, out.faces);
-    if (!normal) {
+    if (!out.faces.number.empty()) plane = planeOf(scene, out.faces);
+    if (!plane) {
       throw InputError(fmt::format(
           "grid: {} is not planar, nor are its faces that face up; name a planar surface, or give "
           "a plane by three corners",
@@ -234,12 +248,23 @@ PlanarFaces planarFaces(const Scene& scene, const std::string& name) {
                                      "{} faces that face up",
                                      name, out.faces.number.size(), all)});
   }
-  if (isTwoSided(scene, out.faces) && glm::dot(*normal, upVector(scene.up)) < -kFlat) {
-    *normal = -*normal;
+  out.plane = *plane;
+  if (!isTwoSided(scene, out.faces)) {
+    out.faces = facing(out.faces, plane->normal);
+  } else if (glm::dot(plane->normal, upVector(scene.up)) < -kFlat) {
+    out.plane = {-plane->normal, -plane->back, -plane->front};
   }
-  if (!isTwoSided(scene, out.faces)) out.faces = facing(out.faces, *normal);
-  out.normal = *normal;
   return out;
+}
+
+/// Notes how far a surface is off its plane, if that is more than rounding of files.
+void noteBend(const std::string& name, const Vec2& sides, PlanarFaces& planar) {
+  const double bend = planar.plane.front - planar.plane.back;
+  if (bend <= kBent * std::max(sides.x, sides.y)) return;
+  planar.notes.push_back(
+      {Severity::info,
+       fmt::format("grid: {} is bent by {:.3g} m; heights are over its foremost corner", name,
+                   bend)});
 }
 
 }  // namespace
@@ -248,15 +273,20 @@ MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, d
                                   std::optional<double> spacing) {
   if (!std::isfinite(height)) throw InputError("grid: the height is no finite number of metres");
   PlanarFaces planar = planarFaces(scene, name);
-  const Vec3 normal = height < 0 ? -planar.normal : planar.normal;
-  const Vec3 origin = scene.vertices[scene.face(planar.faces.number[0])[0]];
+  if (height < 0) {
+    planar.plane = {-planar.plane.normal, -planar.plane.back, -planar.plane.front};
+  }
+  const Vec3 normal = planar.plane.normal;
+  const Vec3 corner = scene.vertices[scene.face(planar.faces.number[0])[0]];
+  const Vec3 origin = corner + (planar.plane.front - glm::dot(normal, corner)) * normal;
   const PlaneFrame flat = makeFrame(origin, normal, axisAcross(normal));
   std::vector<Vec2> corners;
   for (const std::size_t f : planar.faces.number) {
-    for (const Index corner : scene.face(f)) corners.push_back(flat.flat(scene.vertices[corner]));
+    for (const Index at : scene.face(f)) corners.push_back(flat.flat(scene.vertices[at]));
   }
   const PlaneArea area = turned(smallestArea(flat, hullOf(std::move(corners))), scene.up);
   const Vec2 sides = area.high - area.low;
+  noteBend(name, sides, planar);
   const std::string what = "grid: " + name;
   const GridLine columns = gridLine(what, sides.x, sides.y, spacing);
   const GridLine rows = gridLine(what, sides.y, sides.x, spacing);
@@ -265,9 +295,7 @@ MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, d
   std::vector<Vec2> outline;
   for (const std::size_t f : planar.faces.number) {
     outline.clear();
-    for (const Index corner : scene.face(f)) {
-      outline.push_back(area.frame.flat(scene.vertices[corner]));
-    }
+    for (const Index at : scene.face(f)) outline.push_back(area.frame.flat(scene.vertices[at]));
     mark(outline, area, columns, rows, held);
   }
   MeasuringPoints out;
