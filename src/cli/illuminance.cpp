@@ -109,6 +109,10 @@ void summarizeSet(Report& report, const std::string& key, const MeasuringPoints&
   report.number("direct_mean_lx", "mean, direct", s.direct, "lx");
   report.number("indirect_mean_lx", "mean, indirect", s.indirect, "lx");
   report.number("cylindrical_mean_lx", "mean, cylindrical", s.cylinder, "lx");
+  if (s.highest > 0) return;
+  const Note dark{Severity::warning,
+                  set.name + ": no light reaches its points; do they stand outside, or face away?"};
+  report.notes({&dark, 1});
 }
 
 void summarizeMeasuring(Report& report, const PointLightValues& light, double asked) {
@@ -128,8 +132,8 @@ void summarizeMeasuring(Report& report, const PointLightValues& light, double as
     const std::size_t worst = light.report.largest_error_at;
     report.line(
         "note",
-        fmt::format("some points are off by more than {} % though they took all rays that "
-                    "a point may have: one of {} lx by {} %",
+        fmt::format("some points took all rays that a point may have, and are off by more than "
+                    "{} %: one of {} lx by {} %",
                     numberText(100 * asked, 3), numberText(light.lux(worst, Measured::facing), 3),
                     numberText(100 * light.report.largest_error, 3)));
   }

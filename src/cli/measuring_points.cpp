@@ -52,9 +52,11 @@ PlaneText parsePlane(const std::string& text) {
   }
   PlaneText plane;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::optional<Vec3> corner = parseTriple(parts[k]);
-    if (!corner) fail(fmt::format("'{}' is no corner", parts[k]));
-    plane.corners[k] = *corner;
+    if (const std::optional<Vec3> corner = parseTriple(parts[k])) {
+      plane.corners[k] = *corner;
+    } else {
+      fail(fmt::format("'{}' is no corner", parts[k]));
+    }
   }
   if (parts.size() == 4) {
     plane.spacing = parseNumber(parts[3]);

@@ -11,9 +11,8 @@ namespace radiosity {
 
 std::array<Vec3, kCubeFaces> cubeNormals() {
   std::array<Vec3, kCubeFaces> normals{};
-  for (int axis = 0; axis < 3; ++axis) {
-    normals[std::size_t(2 * axis)][axis] = 1;
-    normals[std::size_t(2 * axis + 1)][axis] = -1;
+  for (std::size_t face = 0; face < kCubeFaces; ++face) {
+    normals[face][int(face / 2)] = face % 2 == 0 ? 1 : -1;
   }
   return normals;
 }

@@ -107,7 +107,8 @@ double PointMeter::direct(const SurfacePoint& point, std::size_t k, PointLightVa
   const EmitterLight* emitters = sources_.emitterLight();
   if (emitters == nullptr) return 0;
   const std::span<double> facing = rowOf(out.direct, k, 0);
-  const double square = emitters->irradianceWithin(point, kShareOfDirect * options_.tolerance, facing);
+  const double square =
+      emitters->irradianceWithin(point, kShareOfDirect * options_.tolerance, facing);
   for (std::size_t face = 0; face < kCubeFaces; ++face) {
     addDirect(point, cube_[face], rowOf(out.direct, k, 1 + face));
   }

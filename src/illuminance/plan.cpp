@@ -49,7 +49,7 @@ std::string valueText(double lux) {
 
 /// "+x", or the vector if it is along no axis.
 std::string wayText(const Vec3& way) {
-  constexpr double kAlong = 0.99999;
+  constexpr double kAlong = 0.999;
   for (int axis = 0; axis < 3; ++axis) {
     if (std::abs(way[axis]) > kAlong) {
       return fmt::format("{}{}", way[axis] > 0 ? '+' : '-', "xyz"[axis]);
@@ -61,8 +61,9 @@ std::string wayText(const Vec3& way) {
 /// A grid's values on pixels of a plan.
 class Plan {
  public:
-  Plan(const MeasuringPoints& points, const PointLightValues& light, std::size_t first)
-      : points_(points), grid_(*points.grid), values_(grid_.columns * grid_.rows, kNone) {
+  Plan(const MeasuringPoints& points, const MeasuringPoints::Grid& grid,
+       const PointLightValues& light, std::size_t first)
+      : grid_(grid), values_(grid_.columns * grid_.rows, kNone) {
     bodies_.assign(values_.size(), 0);
     for (std::size_t k = 0; k < points.size(); ++k) {
       if (light.inside[first + k] != 0) {
@@ -116,7 +117,6 @@ class Plan {
     return std::size_t(std::max(1.0, std::ceil(double(needed) / cell)));
   }
 
-  const MeasuringPoints& points_;
   const MeasuringPoints::Grid& grid_;
   std::vector<double> values_;  ///< of cells, lx; NaN: no point, or one in a body
   std::vector<std::uint8_t> bodies_;
@@ -231,10 +231,10 @@ void Plan::draw(Image& image, int left, int top) {
   drawValues(image);
 }
 
-std::vector<std::string> headingOf(const MeasuringPoints& points, const PointLightValues& light,
-                                   std::size_t first, double line_step) {
+std::vector<std::string> headingOf(const MeasuringPoints& points, const MeasuringPoints::Grid& grid,
+                                   const PointLightValues& light, std::size_t first,
+                                   double line_step) {
   const IlluminanceSummary s = summaryOf(points, light, first);
-  const MeasuringPoints::Grid& grid = *points.grid;
   std::vector<std::string> lines{points.name};
   if (s.points > 0) {
     lines.push_back(fmt::format("mean {} lx, from {} to {}: U0 {:.2f}, Ud {:.2f}",
@@ -262,8 +262,9 @@ Image illuminancePlan(const MeasuringPoints& points, const PointLightValues& lig
   if (!points.grid) {
     throw InputError(points.name + ": its points are no grid, of which a plan could be drawn");
   }
-  Plan plan(points, light, first);
-  const std::vector<std::string> heading = headingOf(points, light, first, plan.lineStep());
+  Plan plan(points, *points.grid, light, first);
+  const std::vector<std::string> heading =
+      headingOf(points, *points.grid, light, first, plan.lineStep());
   int width = std::max(plan.width(), kNarrowestPlan);
   for (const std::string& line : heading) width = std::max(width, textWidth(line, kTextScale));
   width += 2 * kEdge;

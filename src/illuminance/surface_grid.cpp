@@ -313,10 +313,10 @@ MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, d
                             .rows = rows.count};
   for (std::size_t cell = 0; cell < held.size(); ++cell) {
     if (held[cell] == 0) continue;
-    const double column = double(cell % columns.count);
-    const double row = double(cell / columns.count);
-    out.at.push_back(out.grid->first + column * columns.step * area.frame.u +
-                     row * rows.step * area.frame.v);
+    const std::size_t column = cell % columns.count;
+    const std::size_t row = cell / columns.count;
+    out.at.push_back(out.grid->first + double(column) * columns.step * area.frame.u +
+                     double(row) * rows.step * area.frame.v);
     out.cell.push_back(cell);
   }
   if (out.at.empty()) {

@@ -40,8 +40,6 @@ py::dict illuminance(const SolutionHandle& light, const Array<double>& points,
 
 }  // namespace
 
-void bindPoints(py::module_& module) {
-  module.def("illuminance", &illuminance);
-}
+void bindPoints(py::module_& module) { module.def("illuminance", &illuminance); }
 
 }  // namespace radiosity::python
