@@ -263,10 +263,7 @@ void EmitterLight::thinOut(const ElementShape& shape, const Lights& from, Lights
 
 double EmitterLight::irradiance(const SurfacePoint& point, const ElementLights* lights,
                                 std::span<double> out) const {
-  const double noise =
-      aimed_.lights().empty()
-          ? 0.0
-          : aimed_.add({point.inner, point.normal, surface_.owners[point.owners]}, out);
+  const double noise = aimedAt(point, out);
   if (emitters_.empty()) return noise;
   const auto* of = static_cast<const Lights*>(lights);
   if (occluders_ == nullptr) return noise + byRays(point, nullptr, out);
@@ -435,23 +432,24 @@ double EmitterLight::byRays(const SurfacePoint& point, const Lights* lights,
   return addSeen(light, looks, out);
 }
 
-double EmitterLight::irradianceWithin(const SurfacePoint& point, double tolerance,
-                                      std::span<double> out) const {
+double EmitterLight::aimedAt(const SurfacePoint& point, std::span<double> out) const {
+  if (aimed_.lights().empty()) return 0;
+  return aimed_.add({point.inner, point.normal, surface_.owners[point.owners]}, out);
+}
+
+double EmitterLight::emittedWithin(const SurfacePoint& point, double tolerance,
+                                   std::span<double> out) const {
   thread_local Unblocked light;
   thread_local Looks looks;
-  const double noise =
-      aimed_.lights().empty()
-          ? 0.0
-          : aimed_.add({point.inner, point.normal, surface_.owners[point.owners]}, out);
   light.shares.clear();
   light.whole.assign(out.size(), 0.0);
   light.sum = 0;
   sumUnblocked(point, nullptr, light);
-  if (!(light.sum > 0)) return noise;
+  if (!(light.sum > 0)) return 0;
   looks.count = 0;
   look(point, light, aims_, kLooks, looks);
-  if (!onlySomeArrive(looks)) return noise + addSeen(light, looks, out);
-  return noise + finely(point, light, tolerance, out);
+  if (!onlySomeArrive(looks)) return addSeen(light, looks, out);
+  return finely(point, light, tolerance, out);
 }
 
 /// The mean of sets of rays, and the square of its standard error over all bands.

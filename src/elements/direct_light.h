@@ -46,10 +46,12 @@ class EmitterLight : public FieldLight {
   double irradiance(const SurfacePoint& point, const ElementLights* lights,
                     std::span<double> out) const override;
 
-  /// The same at a point by itself, whatever element it is on: where only some rays to the emitters
-  /// arrive, it takes more sets of them, each spread by itself, until the standard error of their
-  /// mean is `tolerance` of it, or all kFineSets.
-  double irradianceWithin(const SurfacePoint& point, double tolerance, std::span<double> out) const;
+  /// The two parts of it at a point by itself, whatever element it is on. Of lights without a
+  /// surface:
+  double aimedAt(const SurfacePoint& point, std::span<double> out) const;
+  /// Of emitters, by rays: where only some arrive, it takes more sets of them, each spread by
+  /// itself, until the standard error of their mean is `tolerance` of it, or all kFineSets.
+  double emittedWithin(const SurfacePoint& point, double tolerance, std::span<double> out) const;
   static constexpr std::size_t kFineSets = 16;
 
   /// The number of points from which rays were cast.

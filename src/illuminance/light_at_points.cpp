@@ -17,6 +17,7 @@
 #include "base/processor_clock.h"
 #include "elements/light_sources.h"
 #include "elements/ray_light.h"
+#include "illuminance/clipped_light.h"
 #include "illuminance/directions.h"
 
 namespace radiosity {
@@ -29,6 +30,10 @@ constexpr double kOffSurface = 2e-6;
 /// behind an endless sheet it is a half.
 constexpr double kMostlyBacks = 0.6;
 
+/// Occluders that are clipped off an emitter: of a surface that faces as the point does, and of the
+/// many others.
+constexpr std::size_t kMostClips = 256;
+constexpr std::size_t kMostQuickClips = 16;
 /// Of the tolerance, what direct light takes where it is found by rays.
 constexpr double kShareOfDirect = 0.5;
 
@@ -67,6 +72,7 @@ class PointMeter {
         nothing_wanted_(mesh.size(), 0),
         sources_(mesh, materials, irradiance, elements, nothing_wanted_, false, progress),
         light_(sources_.sources(), materials.lights),
+        clipped_(mesh, materials, progress),
         sets_(options.seed),
         cube_(cubeNormals()),
         uprights_(uprightNormals(up)) {}
@@ -80,7 +86,7 @@ class PointMeter {
   std::span<double> rowOf(std::vector<double>& values, std::size_t point, std::size_t what) const {
     return std::span(values).subspan((point * kMeasured + what) * bands_, bands_);
   }
-  void addDirect(SurfacePoint point, const Vec3& normal, std::span<double> sum) const;
+  double addDirect(SurfacePoint point, const Vec3& normal, bool fine, std::span<double> sum) const;
   double direct(const SurfacePoint& point, std::size_t k, PointLightValues& out) const;
   void castMore(const SurfacePoint& point, std::size_t first, std::size_t count,
                 std::array<SetSums, SphereSets::kSets>& sums, std::size_t& behind) const;
@@ -92,28 +98,37 @@ class PointMeter {
   std::vector<std::uint8_t> nothing_wanted_;
   LightSources sources_;
   RayLight light_;
+  ClippedLight clipped_;
   SphereSets sets_;
   std::array<Vec3, kCubeFaces> cube_;
   std::array<Vec3, kUprights> uprights_;
 };
 
-void PointMeter::addDirect(SurfacePoint point, const Vec3& normal, std::span<double> sum) const {
+/// Clips if few occluders are in between, else casts rays. `fine`: more of either. Returns the
+/// square of the standard error, summed over the bands.
+double PointMeter::addDirect(SurfacePoint point, const Vec3& normal, bool fine,
+                             std::span<double> sum) const {
+  const EmitterLight& emitters = *sources_.emitterLight();
   point.normal = normal;
-  sources_.emitterLight()->irradiance(point, nullptr, sum);
+  const std::size_t most = fine ? kMostClips : kMostQuickClips;
+  if (!clipped_.empty() && clipped_.add(point.position, normal, most, sum)) {
+    return emitters.aimedAt(point, sum);
+  }
+  if (!fine) return emitters.irradiance(point, nullptr, sum);
+  return emitters.aimedAt(point, sum) +
+         emitters.emittedWithin(point, kShareOfDirect * options_.tolerance, sum);
 }
 
 /// Returns the standard error of what falls on the point, facing, as brightness.
 double PointMeter::direct(const SurfacePoint& point, std::size_t k, PointLightValues& out) const {
-  const EmitterLight* emitters = sources_.emitterLight();
-  if (emitters == nullptr) return 0;
+  if (sources_.emitterLight() == nullptr) return 0;
   const std::span<double> facing = rowOf(out.direct, k, 0);
-  const double square =
-      emitters->irradianceWithin(point, kShareOfDirect * options_.tolerance, facing);
+  const double square = addDirect(point, point.normal, true, facing);
   for (std::size_t face = 0; face < kCubeFaces; ++face) {
-    addDirect(point, cube_[face], rowOf(out.direct, k, 1 + face));
+    addDirect(point, cube_[face], false, rowOf(out.direct, k, 1 + face));
   }
   const std::span<double> cylinder = rowOf(out.direct, k, std::size_t(Measured::cylinder));
-  for (const Vec3& normal : uprights_) addDirect(point, normal, cylinder);
+  for (const Vec3& normal : uprights_) addDirect(point, normal, false, cylinder);
   for (double& value : cylinder) value /= double(kUprights);
   const double all = std::accumulate(facing.begin(), facing.end(), 0.0);
   return all > 0 ? std::sqrt(std::max(0.0, square)) / all * brightnessOf(facing) : 0.0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "visibility/clipping/flat_polygon.h"
 #include "visibility/clipping/visible_part.h"
@@ -65,28 +66,36 @@ bool SensorView::faces(const Sensor& sensor, const Facet& facet) const {
 }
 
 double SensorView::visible(const Sensor& sensor, const Facet& facet, Index e) const {
+  constexpr auto kAny = std::numeric_limits<std::size_t>::max();
+  const Target target{elements_.outline(e), facet.normal, facet.offset, elements_.centroid[e],
+                      elements_.radius[e]};
+  return visible(sensor, target, kAny).value_or(0);
+}
+
+std::optional<double> SensorView::visible(const Sensor& sensor, const Target& target,
+                                          std::size_t most) const {
   thread_local VisiblePart part;
   thread_local std::vector<Blocker> blockers;
   thread_local std::vector<Index> between;
   const double touching = elements_.coincidence;
-  const FlatPolygon target = clipToFront(elements_.outline(e), sensor.normal, sensor.horizon);
-  if (target.count < 3) return 0;
+  const FlatPolygon above = clipToFront(target.outline, sensor.normal, sensor.horizon);
+  if (above.count < 3) return 0;
   between.clear();
   std::size_t tests = 0;
-  tree_.query({sensor.eye, 0}, {elements_.centroid[e], elements_.radius[e]},
-              {sensor.normal, sensor.horizon}, {facet.normal, facet.offset + touching}, between,
-              tests);
+  tree_.query({sensor.eye, 0}, {target.centre, target.radius}, {sensor.normal, sensor.horizon},
+              {target.normal, target.offset + touching}, between, tests, most);
+  if (between.size() > most) return std::nullopt;
   std::sort(between.begin(), between.end());
   blockers.clear();
   for (const Index o : between) {
     if (std::binary_search(sensor.touched.begin(), sensor.touched.end(), o)) continue;
     const Occluder& body = occluders_[o];
     const bool cuts = std::any_of(body.corners.begin(), body.corners.end(), [&](const Vec3& c) {
-      return glm::dot(facet.normal, c) < facet.offset - touching;
+      return glm::dot(target.normal, c) < target.offset - touching;
     });
     blockers.push_back({&body, o, cuts});
   }
-  return part.look(sensor.eye, sensor.normal, target.outline(), blockers).visible;
+  return part.look(sensor.eye, sensor.normal, above.outline(), blockers).visible;
 }
 
 /// Whether a point lies on a flat occluder or on its border.

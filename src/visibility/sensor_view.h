@@ -3,6 +3,8 @@
 // proved for points of patches alone; here every polygon blocks by itself.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "visibility/elements/elements.h"
@@ -32,6 +34,17 @@ class SensorView {
 
   /// The form factor from the sensor to element e of a facet that it faces.
   double visible(const Sensor& sensor, const Facet& facet, Index e) const;
+
+  /// A triangle or convex quadrilateral in one plane, its front to the sensor.
+  struct Target {
+    std::span<const Vec3> outline;
+    Vec3 normal{0.0};
+    double offset = 0;  ///< of its plane
+    Vec3 centre{0.0};
+    double radius = 0;  ///< of a ball about the centre that holds it
+  };
+  /// The form factor to it; none if more than `most` occluders may be in between.
+  std::optional<double> visible(const Sensor& sensor, const Target& target, std::size_t most) const;
 
  private:
   bool isOn(const Occluder& flat, const Vec3& at) const;

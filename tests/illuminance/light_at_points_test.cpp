@@ -7,6 +7,7 @@
 
 #include "radiosity/form_factors.h"
 #include "radiosity/illuminance.h"
+#include "radiosity/point_factors.h"
 #include "radiosity/solve.h"
 #include "support/scene_builder.h"
 
@@ -126,6 +127,80 @@ TEST(LightAtPoints, APlateCastsItsShadow) {
   const double d = std::sqrt(1.01 * 1.01 + 0.25 + 4);
   EXPECT_NEAR(light.directOf(1, facing)[0], 2 / (d * d * d), offPlace(d));
   EXPECT_GT(light.directOf(2, facing)[0], 0);
+}
+
+/// Direct light of a black scene, and what exact view factors say.
+struct DirectLightAt {
+  DirectLightAt(SceneBuilder& builder, const std::vector<Vec3>& points)
+      : mesh(meshScene(builder.scene(), {.patches = 50}, quiet).mesh) {
+    const PatchMaterials materials = patchMaterials(builder.scene(), mesh);
+    const std::vector<Vec3> normals(points.size(), Vec3(0, 0, 1));
+    found = lightAtPoints(mesh, materials, std::vector<double>(3 * mesh.size(), 0.0), {}, points,
+                          normals, Up::z, {}, quiet);
+    std::vector<double> factors(points.size() * mesh.size());
+    pointFormFactors(mesh, points, normals, factors, quiet);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      exact.push_back(0);
+      for (std::size_t i = 0; i < mesh.size(); ++i) {
+        exact.back() += factors[k * mesh.size() + i] * materials.emission[3 * i];
+      }
+    }
+  }
+  double off(std::size_t k) const { return found.directOf(k, facing)[0] - exact[k]; }
+
+  Progress quiet;
+  PatchMesh mesh;
+  PointLightValues found;
+  std::vector<double> exact;
+};
+
+std::vector<Vec3> squareOfPoints(int side, double step, double z) {
+  std::vector<Vec3> points;
+  points.reserve(std::size_t(side) * std::size_t(side));
+  for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < side; ++y) {
+      points.emplace_back(step * (x - 0.5 * (side - 1)), step * (y - 0.5 * (side - 1)), z);
+    }
+  }
+  return points;
+}
+
+TEST(LightAtPoints, PenumbrasAreExact) {
+  SceneBuilder builder = blackFloor();
+  builder.level(builder.surface("panel", 0.0, 7), -1, -1, 1, 1, 2, false);
+  const Index plate = builder.surface("plate", 0.0, 0.0, true);
+  builder.level(plate, -0.4, -0.9, 0.5, 0.3, 1);
+  builder.level(plate, 0.9, -1, 1.1, 1, 1.2);
+  const std::vector<Vec3> points = squareOfPoints(11, 0.4, 0.3);
+  const DirectLightAt light(builder, points);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    // The plates are .7 m away, and points 17 micrometres off their place.
+    EXPECT_NEAR(light.off(k), 0, 7 * offPlace(0.7)) << k;
+    EXPECT_EQ(light.found.error[k], 0);
+  }
+}
+
+TEST(LightAtPoints, PastManySlatsTheErrorIsTold) {
+  SceneBuilder builder = blackFloor();
+  builder.level(builder.surface("panel", 0.0, 7), -1, -1, 1, 1, 2, false);
+  const Index slats = builder.surface("slats", 0.0, 0.0, true);
+  constexpr int kSlats = 300;  // more than are clipped
+  const double step = 3.0 / kSlats;
+  for (int k = 0; k < kSlats; ++k) {
+    builder.level(slats, -1.5 + k * step, -1.5, -1.5 + (k + 0.6) * step, 1.5, 1);
+  }
+  const std::vector<Vec3> points = squareOfPoints(5, 0.2, 0);
+  const DirectLightAt light(builder, points);
+  double squares = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    EXPECT_GT(light.found.error[k], 0);
+    EXPECT_LE(light.found.error[k], 0.01);
+    const double off = light.off(k) / light.exact[k];
+    squares += off * off / (light.found.error[k] * light.found.error[k]);
+  }
+  // Of at least four sets: the mean of squares over estimates of three degrees of freedom is 3, and
+  // points share their sets.
+  EXPECT_LT(squares / double(points.size()), 6);
 }
 
 TEST(LightAtPoints, ASkyFillsWhatIsOpen) {
