@@ -164,15 +164,14 @@ const char* axisOf(Measured what);
 double illuminanceOf(std::span<const double> irradiance);
 
 /// Light at points of a solved scene. `irradiance`: N * bands, of the solved patches, W/m^2;
-/// `normals`: a point each, unit. A point may stand anywhere. On a surface it is taken to be
-/// 2e-6 of the scene's diagonal before it, along its normal. Direct light: with the unoccluded part
-/// exact; where something stands between the point and a part of an emitter, 256 rays tell how much
-/// of it arrives. Indirect light by rays in all directions, in eight sets, whose spread tells the
-/// error; they serve all that is measured. Cylinders by 31 upright surfaces (direct light; .06% off
-/// for a small lamp, at most) and by the rays themselves. `elements`: of the sources of indirect
-/// light. The same bits for any number of threads. Errors: InputError for options out of range and
-/// sizes that do not match, a coordinate that is not finite or a normal that has no length; Throws
-/// Cancelled.
+/// `normals`: a point each. A point may stand anywhere; it is taken to be 2e-6 of the scene's
+/// diagonal off its place, along its normal. Direct light, facing: exact, with what hides emitters
+/// clipped off; past more than 256 convex pieces, or of more than 128 emitters, by rays to points
+/// of them. Indirect light by rays in all directions, in eight sets, whose spread tells the error;
+/// they serve all that is measured. Cylinders by 31 upright surfaces (direct light; .06% off for a
+/// small lamp, at most) and by the rays themselves. `elements`: of the sources of indirect light.
+/// The same bits for any number of threads. Errors: InputError for options out of range, sizes that
+/// do not match, a coordinate that is not finite and a normal that has no length. Throws Cancelled.
 PointLightValues lightAtPoints(const PatchMesh& mesh, const PatchMaterials& materials,
                                std::span<const double> irradiance, const ElementOptions& elements,
                                std::span<const Vec3> points, std::span<const Vec3> normals, Up up,

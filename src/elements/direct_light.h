@@ -52,7 +52,7 @@ class EmitterLight : public FieldLight {
   /// Of emitters, by rays: where only some arrive, it takes more sets of them, each spread by
   /// itself, until the standard error of their mean is `tolerance` of it, or all kFineSets.
   double emittedWithin(const SurfacePoint& point, double tolerance, std::span<double> out) const;
-  static constexpr std::size_t kFineSets = 16;
+  static constexpr std::size_t kFineSets = 128;
 
   /// The number of points from which rays were cast.
   std::size_t byRays() const { return by_rays_; }

@@ -189,7 +189,7 @@ TEST(LightAtPoints, PastManySlatsTheErrorIsTold) {
   for (int k = 0; k < kSlats; ++k) {
     builder.level(slats, -1.5 + k * step, -1.5, -1.5 + (k + 0.6) * step, 1.5, 1);
   }
-  const std::vector<Vec3> points = squareOfPoints(5, 0.2, 0);
+  const std::vector<Vec3> points = squareOfPoints(3, 0.3, 0);
   const DirectLightAt light(builder, points);
   double squares = 0;
   for (std::size_t k = 0; k < points.size(); ++k) {
