@@ -28,7 +28,8 @@ struct GridLine {
 };
 
 /// `step`: between points; none: the standard's for an area of this and the other side. Errors:
-/// InputError naming `what` for a step that is no positive number or longer than the side.
+/// InputError naming `what` for a step that is no positive number. One longer than the side: a
+/// point in its middle.
 GridLine gridLine(const std::string& what, double side, double other, std::optional<double> step);
 
 /// Throws InputError naming `what` if there are more points than kMostGridPoints.

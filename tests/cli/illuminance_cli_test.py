@@ -67,6 +67,18 @@ class Illuminance(CliTest):
                                    [32.68, 75.19, 81.32, 69.06, 53.40, 40.00, 105.78, 95.67, 79.26, 61.42],
                                    atol=0.007)
 
+    def test_cie_171_5_6_a_floor_that_shines(self):
+        """100 lm/m^2 from a floor of 4 x 4 m: configuration factors in percent."""
+        radiance = str(100 / LUMENS / math.pi)
+        self.write("room.mtl", materials(0) + f"newmtl shines\nKd 0 0 0\nKe {' '.join(3 * [radiance])}\n")
+        self.write("room.obj", room(4, 4, 3).replace("o floor\nusemtl wall", "o floor\nusemtl shines"))
+        wall = [(2, y, 0, -1, 0, 0) for y in (.75, 1.25, 1.75, 2.25, 2.75)]
+        ceiling = [(x - 2, 3, 0, 0, -1, 0) for x in (.25, .75, 1.25, 1.75)]
+        # To the digits given; points stand 1.3e-5 m off.
+        found = self.lux_at(wall + ceiling, "room.obj")
+        np.testing.assert_allclose(found[:5], [35.901, 27.992, 21.639, 16.716, 12.967], atol=1e-3)
+        np.testing.assert_allclose(found[5:], [26.80, 30.94, 33.98, 35.57], atol=6e-3)
+
     def test_cie_171_5_8_light_between_walls(self):
         """A cube of 4 m, 10,000 lm in its middle: indirect light of mean Phi rho / (S (1 - rho))."""
         scene = self.write_room(4, 4, 4, reflectance=.5)
