@@ -2,6 +2,7 @@
 // sends to a place; what all others ask of lights, they ask of Light.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "radiosity/base.h"
 #include "radiosity/option_line.h"
+#include "radiosity/photometry.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
 
@@ -40,6 +42,15 @@ struct LightTraits {
   bool single = false;      ///< a scene has one at most: the word is its name
   double usual = 0;         ///< strength by default; 0: it must be given
 };
+
+// Parameters that several kinds have.
+void describeAt(auto& list, auto& at) {
+  list({.name = "at", .value = "X,Y,Z", .unit = "m", .help = "Its place"}, at);
+}
+void describeRange(auto& list, auto& range) {
+  list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"}, range,
+       {.from = 0});
+}
 
 /// The same radiance from every direction in which nothing stands.
 struct UniformSky {
@@ -73,9 +84,8 @@ struct PointLight {
   double range = 0;  ///< metres, where it ends, by the window of KHR_lights_punctual; 0: nowhere
 
   static void describe(auto& list, auto& light) {
-    list({.name = "at", .value = "X,Y,Z", .unit = "m", .help = "Its place"}, light.at);
-    list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"},
-         light.range, {.from = 0});
+    describeAt(list, light.at);
+    describeRange(list, light.range);
   }
 
   LightRay ray(const Vec3& place, double u, double v) const;
@@ -106,7 +116,7 @@ struct SpotLight {
   double range = 0;          ///< as of PointLight
 
   static void describe(auto& list, auto& light) {
-    list({.name = "at", .value = "X,Y,Z", .unit = "m", .help = "Its place"}, light.at);
+    describeAt(list, light.at);
     list({.name = "aim", .value = "X,Y,Z", .unit = "m", .help = "A place that it points at"},
          light.aim);
     list({.name = "inner",
@@ -119,8 +129,7 @@ struct SpotLight {
           .unit = "degrees",
           .help = "From here on it does not shine"},
          light.outer, {.to = 180, .above = 0});
-    list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"},
-         light.range, {.from = 0});
+    describeRange(list, light.range);
   }
 
   LightRay ray(const Vec3& place, double u, double v) const;
@@ -181,7 +190,7 @@ struct Sun {
   }
 
   /// u and v choose a point of the disc, alike by area.
-  bool isWide() const { return diameter > 0; }
+  bool isWide(const Vec3& /*place*/) const { return diameter > 0; }
   LightRay ray(const Vec3& place, double u, double v) const;
   /// The mean of the cosine over the disc; none where the triangle's plane cuts the disc.
   std::optional<double> share(const Vec3& a, const Vec3& b, const Vec3& c) const;
@@ -191,6 +200,63 @@ struct Sun {
   void settle(Up up);
 
   bool operator==(const Sun&) const = default;
+};
+
+/// A lamp that spreads its flux as a file says. By default it points straight down, and C0 points
+/// to +x; where it points elsewhere it is tipped there the shortest way, and straight up about C0.
+/// A file of type A or B is of a floodlight: its y, up, stays in the upright plane through the axis,
+/// and points to north (+y where z is up, -z where y is) if the lamp points straight down or up.
+struct PhotometricLight {
+  static constexpr LightTraits kTraits{
+      .word = "ies",
+      .strength = "flux",
+      .unit = "W",
+      .photometric = "lm",
+      .from = "from a lamp",
+      .help = "A lamp of a photometric file, IES LM-63 or EULUMDAT"};
+  LampFile file;
+  Vec3 at{0.0};             ///< metres: the middle of its luminous opening
+  std::optional<Vec3> aim;  ///< metres: a place that it points at; none: straight down
+  double turn = 0;          ///< degrees about its axis, from C0 to C90
+  std::optional<Vec3> up;   ///< of the scene, unit, which settle() sets; none: y
+
+  static constexpr const char* kUnnamed[] = {"file"};
+  static void describe(auto& list, auto& light) {
+    list({.name = "file", .value = "LAMP.ies|.ldt", .help = "IES LM-63 or EULUMDAT"}, light.file);
+    describeAt(list, light.at);
+    list({.name = "aim",
+          .value = "X,Y,Z",
+          .unit = "m",
+          .help = "A place that it points at",
+          .unset = "down"},
+         light.aim);
+    list({.name = "turn",
+          .value = "DEGREES",
+          .unit = "degrees",
+          .help = "About its axis, from C0 to C90"},
+         light.turn, {.from = -360, .to = 360});
+    list({.name = "up", .value = "X,Y,Z"}, light.up);
+  }
+
+  /// x, y and z of the lamp's frame (PhotometryType) in the scene.
+  std::array<Vec3, 3> axes() const;
+  /// Nearer than five sizes of its opening. Farther off it is a point, which is less off than size^2
+  /// / (24 distance^2), .17%: the second moment of a uniform disc.
+  bool isWide(const Vec3& place) const;
+  /// u and v choose a point of the opening, by the area that shows from the place; what it sends is
+  /// the intensity over the whole area that shows in that direction.
+  LightRay ray(const Vec3& place, double u, double v) const;
+  double power() const { return 1; }
+  /// W: that of the file.
+  double usual() const { return file.flux() / kLumensPerWatt; }
+  std::vector<std::string> remarks() const;
+  void settle(Up scene_up) {
+    if (!up) up = scene_up == Up::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+  }
+  /// Throws InputError unless it has a file, and an axis.
+  void validate() const;
+
+  bool operator==(const PhotometricLight&) const = default;
 };
 
 /// Where the sun is seen, with the air's refraction.
@@ -210,9 +276,9 @@ SolarPosition solarPosition(double latitude, double longitude, const std::string
 /// and one of
 ///   radiance(strength)       W/m^2/sr: it comes from where nothing stands
 ///   ray(place, u, v)         it is aimed: the way from a place; u, v in [0, 1)
-/// Any may have kUnnamed and validate(); an aimed one isWide() (u and v matter), share(a, b, c),
-/// power() and settle(up).
-using LightKind = std::variant<UniformSky, PointLight, SpotLight, Sun>;
+/// Any may have kUnnamed and validate(); an aimed one isWide(place) (u and v matter there),
+/// share(a, b, c), power(), usual() (strength by default), remarks() and settle(up).
+using LightKind = std::variant<UniformSky, PointLight, SpotLight, Sun, PhotometricLight>;
 
 struct Light {
   std::string name;
@@ -224,6 +290,9 @@ struct Light {
   /// ",NAME=VALUE" of each parameter that is not as by default, and of the name if it is not the
   /// kind's word.
   std::string parametersText() const;
+  /// The same for people: a file by its name alone.
+  std::string briefText() const;
+  /// Those that people give.
   std::vector<std::string> parameterNames() const;
   bool shines() const;  ///< in some band
   /// Whether it comes from where nothing stands: rays that meet nothing bring its radiance().
@@ -235,13 +304,16 @@ struct Light {
   double fromAround(std::size_t band, double open) const;
   /// Of aimed lights; of no share of others.
   LightRay ray(const Vec3& place, double u, double v) const;
-  bool isWide() const;  ///< there are several ways to a place
+  bool isWide(const Vec3& place) const;  ///< there are several ways to the place
   /// The mean over a triangle that faces it, nothing in between, of irradiance over the strength;
   /// none: there is no closed form.
   std::optional<double> share(const Vec3& a, const Vec3& b, const Vec3& c) const;
   /// W, of one band; none: it has no end.
   std::optional<double> power(std::size_t band) const;
   std::optional<Vec3> place() const;  ///< none: it has none in the scene
+  std::string fileName() const;       ///< of the file that it is made from; empty: of none
+  /// What a user should know of it, a line each.
+  std::vector<std::string> remarks() const;
   /// Whether it comes from beyond the scene.
   bool isFromOutside() const;
   /// What depends on the scene that it stands in; readers and applyOverrides() do it.

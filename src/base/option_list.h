@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <charconv>
+#include <concepts>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,9 +27,18 @@ inline constexpr bool kIsOptional<std::optional<T>> = true;
 template <class T>
 inline constexpr bool kIsRepeated = std::is_same_v<T, std::vector<std::string>>;
 
+/// A value with a text of its own.
+template <class T>
+inline constexpr bool kHasText = requires(T value) {
+  { value.optionText() } -> std::same_as<std::string>;
+  { value.readOption("") } -> std::same_as<bool>;
+};
+
 template <class T>
 std::string optionText(const OptionLine& line, const T& value) {
-  if constexpr (std::is_same_v<T, bool>) {
+  if constexpr (kHasText<T>) {
+    return value.optionText();
+  } else if constexpr (std::is_same_v<T, bool>) {
     return value ? line.on : line.off;
   } else if constexpr (std::is_enum_v<T>) {
     return nameOf(tableOf(value), value);
@@ -48,7 +58,9 @@ std::string optionText(const OptionLine& line, const T& value) {
 /// Whether the text is a value of the option, which it then becomes.
 template <class T>
 bool readOption(const OptionLine& line, std::string_view text, T& value) {
-  if constexpr (std::is_same_v<T, bool>) {
+  if constexpr (kHasText<T>) {
+    return value.readOption(text);
+  } else if constexpr (std::is_same_v<T, bool>) {
     value = text == line.on;
     return value || text == line.off;
   } else if constexpr (std::is_enum_v<T>) {

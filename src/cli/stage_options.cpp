@@ -7,6 +7,7 @@
 
 #include "cli/options.h"
 #include "cli/validators.h"
+#include "radiosity/light_file.h"
 #include "radiosity/tables.h"
 
 namespace radiosity::cli {
@@ -54,6 +55,17 @@ void addLightsOption(CLI::App& app, Request& r) {
       ->group("Scene")
       ->option_text("KIND,STRENGTH,...")
       ->allow_extra_args(false);
+  const auto take_file = [&r](const std::string& path) {
+    nameOption("--lights", [&] {
+      for (const Light& light : readLights(path)) addLight(r.scene.lights, light);
+    });
+  };
+  app.add_option_function<std::string>(
+         "--lights", take_file,
+         "Lights of a list, as --light has them: [{\"kind\": \"ies\", \"file\": \"panel.ldt\", "
+         "\"at\": [1, 2, 2.5], \"name\": \"desk\"}]; files of lamps are sought beside it")
+      ->group("Scene")
+      ->option_text("FILE.json");
 }
 
 }  // namespace

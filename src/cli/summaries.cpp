@@ -106,7 +106,8 @@ void describeLamps(Report& report, const Scene& scene) {
         {light.name, light.traits().word,
          fmt::format("{} {}", triple({light.strength[0], light.strength[1], light.strength[2]}),
                      light.traits().unit),
-         fmt::format("{} {}", light.place() ? "at" : "towards", triple(where)), watts});
+         fmt::format("{} {}", light.place() ? "at" : "towards", triple(where)), watts,
+         light.fileName()});
   }
   if (rows.empty()) return;
   report.section("scene", "Lights");
@@ -115,7 +116,8 @@ void describeLamps(Report& report, const Scene& scene) {
                 {"kind", "kind", false},
                 {"strength", "strength (R, G, B)", false},
                 {"stands", "stands", false},
-                {"power_W", "power W", false}},
+                {"power_W", "power W", false},
+                {"file", "file", false}},
                rows);
 }
 

@@ -60,9 +60,11 @@ void addLights(const PatchMaterials& materials, const PatchMesh& mesh, const For
     if (mesh.clusters) irradiance = clusterMeans(mesh, irradiance, bands);
     container.add("light_" + std::to_string(lights.size()), floats(rgbOf(irradiance, bands)));
     lights.push_back({{"name", light.name},
+                      {"kind", light.traits().word},
+                      {"single", light.traits().single},
                       {"unit", light.traits().unit},
                       {"strength", rgbOf(light.strength, bands)},
-                      {"parameters", light.parametersText()},
+                      {"parameters", light.briefText()},
                       {"radiance", rgbOf(background({&light, 1}, bands), bands)}});
   }
   container.header()["lights"] = lights;

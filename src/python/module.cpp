@@ -84,7 +84,7 @@ py::list describedLights() {
     py::dict option;
     option["name"] = light.name;
     if (light.traits().usual > 0) {
-      option["value"] = "";
+      option["value"] = py::none();
     } else {
       option["value"] = 0.0;
     }

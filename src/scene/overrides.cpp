@@ -242,6 +242,9 @@ void Overrides::replace(Light light, Up up) {
                    describeBands(had_one ? coloursOf(*before) : Vec3(0.0)),
                    describeBands(coloursOf(light)), traits.unit,
                    stands.empty() ? traits.from : stands));
+  for (std::string& remark : light.remarks()) {
+    scene_.notes.push_back({Severity::warning, std::move(remark)});
+  }
   setLight(scene_.lights, std::move(light));
 }
 

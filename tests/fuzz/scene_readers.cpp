@@ -10,6 +10,7 @@
 #include "base/name_pattern.h"
 #include "base/parse.h"
 #include "fuzz/readers.h"
+#include "radiosity/photometry.h"
 #include "radiosity/scene.h"
 #include "scene/assimp/collada_cameras.h"
 #include "scene/assimp/nesting_preflight.h"
@@ -46,6 +47,12 @@ void readDae(std::string_view bytes) {
   });
 }
 
+FuzzReader lampReader(const char* name, const char* ending) {
+  return {name, [ending](std::string_view bytes) {
+            withFile(bytes, ending, [](const std::string& path) { readPhotometry(path); });
+          }};
+}
+
 void readNesting(std::string_view bytes) { checkFbxNesting("a.fbx", bytes); }
 
 void readPattern(std::string_view bytes) {
@@ -73,6 +80,9 @@ std::span<const FuzzReader> sceneReaders() {
       sceneReader("3mf", ".3mf"),
       FuzzReader{"dae", readDae},
       FuzzReader{"nesting", readNesting},
+      lampReader("ies", ".ies"),
+      lampReader("ldt", ".ldt"),
+      FuzzReader{"lamp", [](std::string_view bytes) { Photometry::ofText(bytes); }},
       FuzzReader{"csv", [](std::string_view bytes) { parseCsv("a.csv", bytes); }},
       FuzzReader{"camera", [](std::string_view bytes) { readCamera(bytes, ';'); }},
       FuzzReader{"pattern", readPattern},

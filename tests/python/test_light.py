@@ -1,5 +1,7 @@
 """Light, heat, tables and sensors against closed forms and against each other."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -86,6 +88,37 @@ def test_a_lamp_without_a_surface_lights_a_room():
     floor = rad.Scene(square, [[0, 1, 2, 3]], sun="500,toward=0,0,1,diameter=0")
     under_sun = rad.solve(rad.form_factors(rad.mesh(floor, patches=4)))
     assert np.allclose(under_sun.irradiance, 500)
+
+
+def test_a_lamp_of_a_file_lights_a_room(tmp_path):
+    file = tmp_path / "a, lamp.ies"
+    file.write_text("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 180\n0\n100 100\n")
+    lamp = rad.Light("ies", file=file, at=(0.5, 0.5, 0.5), name="my lamp")
+    scene = rad.load(ROOT / "data/furnace-cube.obj", set="all.emission=0", lights=lamp)
+    file.unlink()
+    light = rad.solve(rad.form_factors(rad.mesh(scene, patches=24), tolerance=1e-6), tolerance=1e-10)
+    # .25% a patch, each by itself.
+    assert light.summary["energy"]["from_sky"] == pytest.approx([4 * np.pi * 100 / 683] * 3, rel=1e-3)
+    with pytest.raises(rad.InputError, match="no such file"):
+        rad.load(ROOT / "data/furnace-cube.obj", lights=lamp)
+    with pytest.raises(rad.InputError, match="file: is of type int; give the path of a file"):
+        rad.Light("ies", file=7)
+
+
+def test_a_sky_may_be_an_array_and_no_light_an_empty_text():
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for sky in (np.array([1.0, 2.0, 3.0]), np.array(2.0), np.float32(2), [1, 2, 3]):
+            scene = rad.Scene(square, [[0, 1, 2, 3]], sky=sky)
+            assert scene.sky == pytest.approx(np.broadcast_to(sky, 3))
+    for given in ({"sky": ""}, {"sun": ""}):
+        with pytest.raises(rad.InputError, match="is an empty text; give its strength, or leave it out"):
+            rad.Scene(square, [[0, 1, 2, 3]], **given)
+    with pytest.raises(rad.InputError, match="lights: has an empty text"):
+        rad.Scene(square, [[0, 1, 2, 3]], lights=[""])
+    with pytest.raises(rad.InputError, match="intensity: is an empty text"):
+        rad.Light("point", intensity="")
 
 
 def test_a_table_of_an_own_matrix_goes_by_row_names():

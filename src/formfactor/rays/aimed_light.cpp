@@ -11,10 +11,14 @@
 namespace radiosity {
 namespace {
 
-/// Ways from a point to a wide light, and those from one that sees a part of it. With 64 a penumbra
-/// has steps of 1.6%.
+/// Ways from a point to a wide light. 64 if it sees a part of it (a penumbra has steps of 1.6%) or
+/// they bring light unevenly, so that their standard deviation is this share of their mean; ...
 constexpr std::size_t kWays = 16;
 constexpr std::size_t kMoreWays = 64;
+constexpr double kUneven = 0.2;
+/// ... and the most where it is a tenth of its size away. Then a square is right to 1% down to that.
+constexpr std::size_t kMostWays = 1024;
+constexpr double kVeryUneven = 2;
 /// Points of a patch, in each of two halves: at first, then as many as the tolerance takes. Shadows
 /// of less than a hundredth of the patch may fall between the first ones.
 constexpr std::array<std::size_t, 3> kPoints{64, 512, 4096};
@@ -22,6 +26,37 @@ static_assert(kPoints.back() <= kMostPoints);
 /// Of all light on a patch.
 constexpr double kPatchTolerance = 2.5e-3;
 constexpr std::size_t kHalves = 2;
+
+/// The first 2^n of these are a net of the unit square: one in each of 2^n rectangles, whatever
+/// their shape (Sobol's first two dimensions; Kollig & Keller, "Efficient multidimensional
+/// sampling", 2002).
+Vec2 netPoint(std::size_t number) {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t bit = 1U << 31U;
+  std::uint32_t row = bit;
+  for (auto left = std::uint32_t(number); left != 0; left >>= 1U) {
+    if ((left & 1U) != 0) {
+      x |= bit;
+      y ^= row;
+    }
+    bit >>= 1U;
+    row ^= row >> 1U;
+  }
+  return {double(x) * 0x1p-32, double(y) * 0x1p-32};
+}
+
+/// The standard deviation over the mean; 0 of nothing.
+double unevenness(std::span<const double> values) {
+  double sum = 0;
+  double squares = 0;
+  for (const double value : values) {
+    sum += value;
+    squares += value * value;
+  }
+  const double count = double(values.size());
+  return sum > 0 ? std::sqrt(std::max(0.0, count * squares / (sum * sum) - 1)) : 0.0;
+}
 
 double twiceArea(const PatchMesh& mesh, const std::array<Index, 3>& piece) {
   const Vec3& corner = mesh.vertices[piece[0]];
@@ -85,7 +120,7 @@ double AimedLight::add(const RaySource& at, std::span<double> irradiance) const 
   ways.clear();
   double square = 0;
   for (std::size_t l = 0; l < lights_.size(); ++l) {
-    if (lights_[l].isWide()) {
+    if (lights_[l].isWide(at.position)) {
       square += addWide(lights_[l], at, irradiance);
       continue;
     }
@@ -110,14 +145,11 @@ double AimedLight::add(const RaySource& at, std::span<double> irradiance) const 
 double AimedLight::addWide(const Light& light, const RaySource& at,
                            std::span<double> irradiance) const {
   thread_local Ways ways;
-  // Hammersley's points: the odd ones are spread as the even ones.
   const auto look = [&](std::size_t count) {
     ways.clear();
     for (std::size_t k = 0; k < count; ++k) {
-      double v = 0;
-      double digit = 0.5;
-      for (std::size_t bits = k; bits > 0; bits /= 2, digit /= 2) v += double(bits % 2) * digit;
-      const LightRay ray = light.ray(at.position, (double(k) + 0.5) / double(count), v);
+      const Vec2 chosen = netPoint(k) + 0.5 / double(count);
+      const LightRay ray = light.ray(at.position, chosen.x, chosen.y);
       const double share = ray.share * glm::dot(at.normal, ray.toward) / double(count);
       ways.to.push_back(endOf(at.position, ray));
       ways.share.push_back(std::max(0.0, share));
@@ -126,10 +158,13 @@ double AimedLight::addWide(const Light& light, const RaySource& at,
   };
   look(kWays);
   const auto seen = std::ranges::count(ways.seen, 1);
-  if (seen > 0 && seen < std::ptrdiff_t(kWays)) look(kMoreWays);
+  const bool is_part = seen > 0 && seen < std::ptrdiff_t(kWays);
+  if (is_part || unevenness(ways.share) > kUneven) look(kMoreWays);
+  if (ways.to.size() == kMoreWays && unevenness(ways.share) > kVeryUneven) look(kMostWays);
+  // Each half is spread as all are.
   std::array<double, kHalves> lit{};
   for (std::size_t k = 0; k < ways.to.size(); ++k) {
-    if (ways.seen[k] != 0) lit[k % kHalves] += ways.share[k];
+    if (ways.seen[k] != 0) lit[k * kHalves / ways.to.size()] += ways.share[k];
   }
   double square = 0;
   for (std::size_t b = 0; b < irradiance.size(); ++b) {

@@ -20,6 +20,8 @@ export interface MaterialInfo {
 /** A light without a surface, by its strength in `unit`. */
 export interface LightInfo {
   name: string;
+  kind: string;
+  single: boolean; // the kind is an option of the command line
   unit: string;
   strength: Rgb;
   parameters: string; // ",NAME=VALUE" of each, as the command line has them

@@ -78,7 +78,7 @@ export class RelightPanel {
   }
 
   private light(l: number): Row {
-    const { name, unit, strength, parameters } = this.viewer.data.header.lights[l]!;
+    const { name, kind, single, unit, strength, parameters } = this.viewer.data.header.lights[l]!;
     const get = () => strength.map((x, b) => x * this.viewer.lights[l]![b]!) as Rgb;
     return {
       name, note: "", stored: strength, limits: uniform(STRONGEST * largest(strength)), unit: unit.replace("^2", "²"),
@@ -86,7 +86,7 @@ export class RelightPanel {
       set: (value) => {
         this.viewer.lights[l] = value.map((x, b) => (strength[b]! > 0 ? x / strength[b]! : 0)) as Rgb;
       },
-      option: () => `--${name} ${digits(get())}${parameters}`,
+      option: () => `${single ? `--${kind} ` : `--light ${kind},`}${digits(get())}${parameters}`,
     };
   }
 

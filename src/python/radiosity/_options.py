@@ -18,12 +18,16 @@ def takes_options(*stages: str) -> Callable[[Function], Function]:
         names = {p.name for p in given}
         others = [option for option in _options_of(stages) if option["name"] not in names]
         added = [inspect.Parameter(option["name"], inspect.Parameter.KEYWORD_ONLY, default=option["value"],
-                                   annotation=type(option["value"]).__name__) for option in others]
+                                   annotation=_type_name(option["value"])) for option in others]
         function.__signature__ = signature.replace(parameters=given + added)  # type: ignore[attr-defined]
         function.__doc__ = (function.__doc__ or "") + "".join(
             f"\n    {option['name']}: {option['help']}." for option in others)
         return function
     return documented
+
+
+def _type_name(value: Any) -> str:
+    return "Any" if value is None else type(value).__name__
 
 
 def more(stages: Union[str, Sequence[str]], given: dict, function: str = "") -> dict:

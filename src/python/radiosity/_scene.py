@@ -102,12 +102,16 @@ def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, A
 class Light(Fixed):
     """A light without a surface, for load() and Scene().
 
-    kind: point, spot or sun. parameters: its strength by its name (intensity, W/sr; irradiance of what
-    faces a sun, W/m^2; one number, three, or a text with another unit, "800cd", "900lm"), what else
-    the kind takes (at, aim, outer, elevation, ...; radiosity info --help lists them), and `name`.
+    kind: point, spot, sun or ies. parameters: its strength by its name (intensity, W/sr; irradiance of
+    what faces a sun, W/m^2; flux of a lamp, W; one number, three, or a text with another unit, "800cd",
+    "900lm"), what else the kind takes (at, aim, outer, elevation, ...; radiosity info --help lists
+    them), and `name`. ies: `file` is the path of an IES LM-63 (.ies) or EULUMDAT (.ldt) file, which is
+    read when the scene is made; its flux is the default.
 
     >>> rad.Light("point", intensity="800cd", at=(1, 2, 2.5), name="desk")
     <Light point,intensity=800cd,at=1,2,2.5,name=desk>
+    >>> rad.Light("ies", file="lamps/panel.ldt", at=(0, 0, 3), turn=90)
+    <Light ies,file=lamps/panel.ldt,at=0,0,3,turn=90>
     """
 
     def __init__(self, kind: str, **parameters: Any) -> None:
@@ -120,8 +124,13 @@ class Light(Fixed):
 
 
 def _light_value(name: str, value: Any) -> str:
+    if name == "file":
+        value = path_text(name, value)
     if isinstance(value, str):
-        return "".join(f"%{ord(c):02x}" if c in "%,;= \n\t" else c for c in value) if name == "name" else value
+        if not value:
+            raise InputError(f"{name}: is an empty text; give a value, or leave it out")
+        named = name in ("name", "file")
+        return "".join(f"%{ord(c):02x}" if c in "%,;=| \n\t" else c for c in value) if named else value
     given = numbers(name, value, [(), (3,)], "one number, or three")
     return ",".join(f"{float(x):g}" if float(f"{float(x):g}") == float(x) else repr(float(x))
                     for x in given.reshape(-1))
@@ -129,14 +138,23 @@ def _light_value(name: str, value: Any) -> str:
 
 def _lights(given: Mapping[str, Any], more_lights: Any = ()) -> list:
     """Word and text of each light."""
-    texts_of = [(word, value if isinstance(value, str) else ",".join(map(repr, _colour(word, value))))
-                for word, value in given.items() if value is not None and value != ""]
+    texts_of = []
+    for word, value in given.items():
+        if value is None:
+            continue
+        if not isinstance(value, str):
+            value = ",".join(map(repr, _colour(word, value)))
+        elif not value:
+            raise InputError(f"{word}: is an empty text; give its strength, or leave it out")
+        texts_of.append((word, value))
     listed = [more_lights] if isinstance(more_lights, (str, Light)) else list(more_lights)
     for light in listed:
         if isinstance(light, Light):
             texts_of.append((light._kind, light._text))
             continue
         require("lights", light, str, "rad.Light(...) or its text, 'point,800cd,at=1,2,2.5'")
+        if not light:
+            raise InputError("lights: has an empty text; give rad.Light(...) or 'point,800cd,at=1,2,2.5'")
         word, _, rest = light.partition(",")
         texts_of.append((word, rest))
     return texts_of

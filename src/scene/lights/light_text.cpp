@@ -10,6 +10,7 @@
 #include <ranges>
 
 #include "base/option_list.h"
+#include "base/printable.h"
 #include "radiosity/spelling.h"
 
 namespace radiosity {
@@ -17,30 +18,8 @@ namespace radiosity {
 namespace {
 
 constexpr std::string_view kName = "name";
-/// They end a value, or a light in the key of a stage.
-constexpr std::string_view kReserved = "%,;= \n\t";
-
-std::string encoded(std::string_view name) {
-  std::string text;
-  for (const char c : name) {
-    text += kReserved.find(c) == kReserved.npos ? std::string(1, c)
-                                                : fmt::format("%{:02x}", std::uint8_t(c));
-  }
-  return text;
-}
-
-std::string decoded(std::string_view text) {
-  std::string name;
-  for (std::size_t k = 0; k < text.size(); ++k) {
-    unsigned code = 0;
-    const char* digits = text.data() + k + 1;
-    const bool whole = text[k] == '%' && k + 2 < text.size() &&
-                       std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2;
-    name += whole ? char(code) : text[k];
-    if (whole) k += 2;
-  }
-  return name;
-}
+/// They end a value, a light in the key of a stage, or the name of a file before its table.
+constexpr std::string_view kReserved = "%,;=| \n\t";
 
 bool isSky(const Light& light) { return std::holds_alternative<UniformSky>(light.kind); }
 
@@ -94,9 +73,7 @@ class Reading {
 
   Light light() {
     for (const Given& given : givenIn(text_)) take(given);
-    if (light_.strength.empty() && light_.traits().usual > 0) {
-      light_.strength = {light_.traits().usual};
-    }
+    if (light_.strength.empty()) takeUsual();
     if (light_.strength.size() == 1) light_.strength.resize(bands_, light_.strength[0]);
     if (light_.strength.size() != bands_) failAtStrength();
     settleUnit();
@@ -115,7 +92,7 @@ class Reading {
 
   void take(const Given& given) {
     if (given.name == kName) {
-      light_.name = decoded(given.text());
+      light_.name = decodedText(given.text());
       if (light_.name.empty()) fail("has an empty name");
       const auto isKind = [&](const Light& kind) {
         return kind.traits().single && kind.name == light_.name &&
@@ -124,10 +101,12 @@ class Reading {
       if (std::ranges::any_of(lightKinds(), isKind)) {
         fail(fmt::format("'{}' is the name of another light; give it one of its own", light_.name));
       }
-    } else if (given.name.empty() && isUnnamed(given)) {
-      for (std::size_t k = 0; k < given.values.size(); ++k) {
+    } else if (const std::size_t count = unnamedIn(given); count > 0) {
+      for (std::size_t k = 0; k < count; ++k) {
         set(unnamedOf(light_)[k], std::string(given.values[k]));
       }
+      if (count == given.values.size()) return;
+      takeStrength({"", {given.values.begin() + std::ptrdiff_t(count), given.values.end()}});
     } else if (given.name.empty() || given.name == light_.traits().strength) {
       takeStrength(given);
     } else {
@@ -135,22 +114,51 @@ class Reading {
     }
   }
 
-  bool isUnnamed(const Given& given) const {
+  /// How many of the values that have no name are parameters: one that is no strength may come
+  /// before that; several stand for it.
+  std::size_t unnamedIn(const Given& given) const {
+    const std::size_t count = unnamedOf(light_).size();
+    if (!given.name.empty() || count == 0 || given.values.size() < count) return 0;
+    if (count == 1) return strengthIn(given.values[0]) ? 0 : 1;
     const auto isNoNumber = [](std::string_view value) { return !parseNumber(value); };
-    return given.values.size() == unnamedOf(light_).size() && isNoNumber(given.values.back()) &&
-           !std::ranges::all_of(given.values, isNoNumber);
+    const bool fits = given.values.size() == count && isNoNumber(given.values.back()) &&
+                      !std::ranges::all_of(given.values, isNoNumber);
+    return fits ? count : 0;
+  }
+
+  void takeUsual() {
+    const double usual = std::visit(
+        [](const auto& of) {
+          if constexpr (!requires { of.usual(); }) return of.kTraits.usual;
+          else {
+            of.validate();
+            return of.usual();
+          }
+        },
+        light_.kind);
+    if (usual > 0) light_.strength = {usual};
+  }
+
+  struct Strength {
+    double number;
+    std::string_view unit;
+  };
+  std::optional<Strength> strengthIn(std::string_view value) const {
+    double number = 0;
+    const char* end = value.data() + value.size();
+    const auto [rest, error] = std::from_chars(value.data(), end, number);
+    const std::string_view unit(rest, std::size_t(end - rest));
+    if (error != std::errc() || !std::isfinite(number) || !isUnit(unit)) return std::nullopt;
+    return Strength{number, unit};
   }
 
   void takeStrength(const Given& given) {
     light_.strength.clear();
     for (const std::string_view value : given.values) {
-      double number = 0;
-      const char* end = value.data() + value.size();
-      const auto [rest, error] = std::from_chars(value.data(), end, number);
-      const std::string_view unit(rest, std::size_t(end - rest));
-      if (error != std::errc() || !std::isfinite(number) || !isUnit(unit)) failAtStrength();
-      if (!unit.empty()) unit_ = unit;
-      light_.strength.push_back(number);
+      const std::optional<Strength> strength = strengthIn(value);
+      if (!strength) failAtStrength();
+      if (!strength->unit.empty()) unit_ = strength->unit;
+      light_.strength.push_back(strength->number);
     }
   }
 
@@ -207,29 +215,63 @@ class Reading {
 
 }  // namespace
 
+std::string encodedText(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    text += kReserved.find(c) == kReserved.npos ? std::string(1, c)
+                                                : fmt::format("%{:02x}", std::uint8_t(c));
+  }
+  return text;
+}
+
+std::string decodedText(std::string_view text) {
+  std::string name;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    unsigned code = 0;
+    const char* digits = text.data() + k + 1;
+    const bool whole = text[k] == '%' && k + 2 < text.size() &&
+                       std::from_chars(digits, digits + 2, code, 16).ptr == digits + 2;
+    name += whole ? char(code) : text[k];
+    if (whole) k += 2;
+  }
+  return name;
+}
+
 std::vector<std::string> Light::parameterNames() const {
   std::vector<std::string> names;
   forParameters(kind, [&](const OptionLine& line, const auto& /*field*/) {
-    names.push_back(line.optionName());
+    if (*line.help != '\0') names.push_back(line.optionName());
   });
   return names;
 }
 
-std::string Light::parametersText() const {
+namespace {
+
+std::string parametersOf(const Light& light, bool brief) {
   std::vector<Light> kinds = lightKinds();
   std::vector<std::string> usual;
-  forParameters(kinds[kind.index()].kind, [&](const OptionLine& line, const auto& value) {
+  forParameters(kinds[light.kind.index()].kind, [&](const OptionLine& line, const auto& value) {
     usual.push_back(optionText(line, value));
   });
   std::string text;
   std::size_t k = 0;
-  forParameters(kind, [&](const OptionLine& line, const auto& value) {
-    const std::string now = optionText(line, value);
-    if (now != usual[k++]) text += "," + line.optionName() + "=" + now;
+  forParameters(light.kind, [&](const OptionLine& line, const auto& value) {
+    std::string now = optionText(line, value);
+    const bool is_usual = now == usual[k++];
+    if constexpr (kHasText<std::remove_cvref_t<decltype(value)>>) {
+      if (brief) now = encodedText(value.name());
+    }
+    if (!is_usual && !(brief && *line.help == '\0')) text += "," + line.optionName() + "=" + now;
   });
-  if (name != traits().word) text += fmt::format(",{}={}", kName, encoded(name));
+  if (light.name != light.traits().word) text += fmt::format(",{}={}", kName, encodedText(light.name));
   return text;
 }
+
+}  // namespace
+
+std::string Light::parametersText() const { return parametersOf(*this, false); }
+
+std::string Light::briefText() const { return parametersOf(*this, true); }
 
 Light lightOf(const std::string& word, const std::string& text, int bands) {
   return Reading(word, text, bands).light();
@@ -274,7 +316,10 @@ std::string standText(const Light& light, Up up) {
                        stands.azimuth);
   }
   const std::optional<Vec3> at = light.place();
-  return at ? fmt::format("at {:.6g},{:.6g},{:.6g}", at->x, at->y, at->z) : "";
+  if (!at) return "";
+  const std::string file = light.fileName();
+  return fmt::format("at {:.6g},{:.6g},{:.6g}{}", at->x, at->y, at->z,
+                     file.empty() ? "" : ", " + printable(file));
 }
 
 std::string strengthText(std::span<const double> strength) {

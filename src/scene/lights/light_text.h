@@ -4,12 +4,17 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "radiosity/light.h"
 
 namespace radiosity {
 
+/// A name within a light's text: %xx for what separates the parts of one.
+std::string encodedText(std::string_view name);
+/// The inverse.
+std::string decodedText(std::string_view text);
 /// Empty: there is no sky.
 std::vector<double> skyRadiance(std::span<const Light> lights);
 /// "NAME=TEXT" of each light that is not the sky; TEXT as lightOf() takes it.

@@ -62,10 +62,10 @@ LightRay Light::ray(const Vec3& place, double u, double v) const {
       kind);
 }
 
-bool Light::isWide() const {
+bool Light::isWide(const Vec3& place) const {
   return std::visit(
-      [](const auto& of) {
-        if constexpr (requires { of.isWide(); }) return of.isWide();
+      [&](const auto& of) {
+        if constexpr (requires { of.isWide(place); }) return of.isWide(place);
         return false;
       },
       kind);
@@ -94,6 +94,24 @@ std::optional<Vec3> Light::place() const {
       [](const auto& of) -> std::optional<Vec3> {
         if constexpr (requires { of.at; }) return of.at;
         return std::nullopt;
+      },
+      kind);
+}
+
+std::string Light::fileName() const {
+  return std::visit(
+      [](const auto& of) -> std::string {
+        if constexpr (requires { of.file; }) return of.file.name();
+        return {};
+      },
+      kind);
+}
+
+std::vector<std::string> Light::remarks() const {
+  return std::visit(
+      [](const auto& of) -> std::vector<std::string> {
+        if constexpr (requires { of.remarks(); }) return of.remarks();
+        return {};
       },
       kind);
 }

@@ -1,0 +1,28 @@
+// The readers of photometric files.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "radiosity/photometry.h"
+
+namespace radiosity {
+
+/// IES LM-63. `content` is all of the file, `file` its name in errors.
+Photometry readIes(const std::string& file, std::string_view content);
+/// EULUMDAT.
+Photometry readEulumdat(const std::string& file, std::string_view content);
+
+/// Whether vertical angles of type C cover what the formats have: 0 to 90, 90 to 180, or both.
+bool isVerticalRange(double first, double last);
+inline constexpr const char* kVerticalRanges =
+    "they go from 0 to 90, 90 to 180 or 0 to 180; add intensities of 0 where it is dark";
+/// cd as tables keep them. Calls fail(what, value), which throws, for one below 0 or too large.
+float candelaOf(double value, const auto& fail) {
+  if (value < 0) fail("an intensity below 0", value);
+  if (value > double(std::numeric_limits<float>::max())) fail("an intensity beyond all lamps", value);
+  return float(value);
+}
+
+}  // namespace radiosity
