@@ -48,8 +48,8 @@ void describeAt(auto& list, auto& at) {
   list({.name = "at", .value = "X,Y,Z", .unit = "m", .help = "Its place"}, at);
 }
 void describeRange(auto& list, auto& range) {
-  list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"}, range,
-       {.from = 0});
+  list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"},
+       range, {.from = 0});
 }
 
 /// The same radiance from every direction in which nothing stands.
@@ -204,8 +204,9 @@ struct Sun {
 
 /// A lamp that spreads its flux as a file says. By default it points straight down, and C0 points
 /// to +x; where it points elsewhere it is tipped there the shortest way, and straight up about C0.
-/// A file of type A or B is of a floodlight: its y, up, stays in the upright plane through the axis,
-/// and points to north (+y where z is up, -z where y is) if the lamp points straight down or up.
+/// A file of type A or B is of a floodlight: its y, up, stays in the upright plane through the
+/// axis, and points to north (+y where z is up, -z where y is) if the lamp points straight down or
+/// up.
 struct PhotometricLight {
   static constexpr LightTraits kTraits{
       .word = "ies",
@@ -240,8 +241,8 @@ struct PhotometricLight {
 
   /// x, y and z of the lamp's frame (PhotometryType) in the scene.
   std::array<Vec3, 3> axes() const;
-  /// Nearer than five sizes of its opening. Farther off it is a point, which is less off than size^2
-  /// / (24 distance^2), .17%: the second moment of a uniform disc.
+  /// Nearer than ten sizes of its opening. Farther off it is a point, which is off by .25% at most:
+  /// by size^2 / (4 distance^2) before a disc that is alike bright (1% at the usual five sizes).
   bool isWide(const Vec3& place) const;
   /// u and v choose a point of the opening, by the area that shows from the place; what it sends is
   /// the intensity over the whole area that shows in that direction.

@@ -26,10 +26,10 @@ struct Photometry {
   std::vector<double> vertical;    ///< V >= 2 angles, degrees, ascending; beyond them it is dark
   std::vector<double> horizontal;  ///< H angles, the whole range; one of 0: alike all around z
   std::vector<float> candela;      ///< H * V, row-major: a half-plane a row
-  Vec3 opening{0.0};   ///< metres along x, y, z; it is luminous alike, its middle is the lamp's place
-  bool round = false;  ///< an ellipse in x and y instead of a rectangle
-  double lamps = 0;    ///< lm, what the bare lamps give, as the file states; 0: it does not
-  double stated = 0;   ///< lm, what leaves the luminaire, as the file states; 0: it does not
+  Vec3 opening{0.0};               ///< metres along x, y, z, about the lamp's place; luminous alike
+  bool round = false;              ///< an ellipse in x and y instead of a rectangle
+  double lamps = 0;   ///< lm, what the bare lamps give, as the file states; 0: it does not
+  double stated = 0;  ///< lm, what leaves the luminaire, as the file states; 0: it does not
   std::vector<std::string> notes;  ///< of the reader, a line each; not a part of the text
 
   /// cd in a direction of the lamp's frame, of any length: bilinear in the angles.

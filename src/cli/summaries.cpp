@@ -102,10 +102,11 @@ void describeLamps(Report& report, const Scene& scene) {
     }
     const LightRay ray = light.ray(Vec3(0.0), 0, 0);
     const Vec3 where = light.place().value_or(ray.toward);
+    const Vec3 strength(light.strength[0], light.strength[1], light.strength[2]);
     rows.push_back(
         {light.name, light.traits().word,
-         fmt::format("{} {}", triple({light.strength[0], light.strength[1], light.strength[2]}),
-                     light.traits().unit),
+         fmt::format("{} {}", triple(strength), light.traits().unit),
+         fmt::format("{} {}", triple(kLumensPerWatt * strength), light.traits().photometric),
          fmt::format("{} {}", light.place() ? "at" : "towards", triple(where)), watts,
          light.fileName()});
   }
@@ -115,6 +116,7 @@ void describeLamps(Report& report, const Scene& scene) {
                {{"name", "light", false},
                 {"kind", "kind", false},
                 {"strength", "strength (R, G, B)", false},
+                {"photometric", "in cd, lx or lm", false},
                 {"stands", "stands", false},
                 {"power_W", "power W", false},
                 {"file", "file", false}},

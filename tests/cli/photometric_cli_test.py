@@ -44,7 +44,7 @@ class PhotometricLamps(CliTest):
         (light,) = self.report("info", "a.h5")["scene"]["lights"]
         self.assertEqual([light["kind"], light["stands"], light["file"]],
                          ["ies", "at 0.5, 0.8, 0.5", "lamp.ies"])
-        self.assertEqual(light["power_W"], "1, 1, 1")
+        self.assertEqual([light["power_W"], light["photometric"]], ["1, 1, 1", "683, 683, 683 lm"])
         run = self.run_program("solve", "a.h5", "--without", "Desk", "--set", "lamp.radiance=1")
         self.assertIn("left out: Desk", run.out)
         self.assertGreater(first[0], 0)
@@ -69,10 +69,33 @@ class PhotometricLamps(CliTest):
         run = self.run_program("solve", "box.obj", *SMALL, "--light", "ies,lamp.ies,at=5,.9,.5")
         self.assertIn("ies lights nothing: it stands in a body or behind surfaces", run.out)
 
+    def test_a_list_has_several(self):
+        (self.folder / "lamps").mkdir()
+        self.write("lamps/a, b.ies", lamp())
+        self.write("lamps/list.json", """[{"kind": "ies", "file": "a, b.ies", "at": [0.5, 0.9, 0.5], "flux": "683lm"},
+            {"kind": "ies", "file": "a, b.ies", "at": [0.2, 0.9, 0.5], "flux": [1, 2, 3], "name": "desk"},
+            {"kind": "point", "intensity": 10, "at": [0.5, 0.5, 0.5]}]""")
+        self.run_program("solve", "box.obj", *SMALL, *DARK, "--lights", "lamps/list.json", "-o", "a.h5")
+        lights = self.report("info", "a.h5")["scene"]["lights"]
+        self.assertEqual([(light["name"], light["strength"], light["file"]) for light in lights],
+                         [("ies", "1, 1, 1 W", "a, b.ies"), ("desk", "1, 2, 3 W", "a, b.ies"),
+                          ("point", "10, 10, 10 W/sr", "")])
+        for text, words in [("{}", ["bad.json: is not a list of lights"]), ("[]", ["bad.json: has no lights"]),
+                            ("[1]", ["bad.json: light 1 is no object"]), ("[{}]", ["no light is called ''"]),
+                            ('[{"kind": "point", "intensity": true}]', ["light 1: intensity is no number"]),
+                            ('[{"kind": "point", "intensity": "1,at=2"}]', ["light 1: intensity is no number"]),
+                            ('[{"kind": "point", "intensity": 1, "at": [[1]]}]', ["light 1: at is no number"]),
+                            ('[{"kind": "point", "power": 1}]', ["bad.json: light 1: ", "'power' is no parameter"]),
+                            ('[{"kind": "ies", "file": "none.ies"}]', ["light 1: none.ies: no such file"]),
+                            ("[", ["bad.json: is not JSON"])]:
+            with self.subTest(text):
+                self.write("bad.json", text)
+                self.refuse("solve", "box.obj", "--lights", "bad.json", words=["--lights: ", *words])
+
     def test_what_is_no_lamp_is_refused(self):
         self.write("bad.ies", lamp("100 -1"))
         self.write("big.ies", lamp().replace("2 1 1 2 0", "2 999999999 1 2 0"))
-        for text, words in [("ies", ["--light: ies: it has no file; give file=lamp.ies"]),
+        for text, words in [("ies", ["ies: it has no file; give file=lamp.ies or file=lamp.ldt"]),
                             ("ies,none.ies", ["none.ies: no such file"]),
                             ("ies,box.obj", ["box.obj: is no file of a lamp"]),
                             ("ies,bad.ies", ["bad.ies:7: an intensity below 0, -1 cd"]),

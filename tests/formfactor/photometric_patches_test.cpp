@@ -15,7 +15,6 @@ using test::anglesBy;
 using test::cosineOf;
 using test::IesLamp;
 
-
 class PhotometricPatches : public test::SceneFiles {
  protected:
   Light lightOfFile(const IesLamp& lamp, const std::string& rest) const {
@@ -55,10 +54,10 @@ IesLamp cosineLamp(double candela, const std::string& opening = "2 0 0 0") {
 
 // CIE 171:2006, case 5.2: 1000 cd straight down, 3 m above the floor, I0 h^2 / d^4.
 TEST_F(PhotometricPatches, ACosineLampLightsAFloor) {
-  const std::pair<Vec2, double> table[] = {
-      {{0, 0}, 111.11},  {{.5, 0}, 105.19}, {{1, 0}, 90.00},   {{1.5, 0}, 71.11},
-      {{.5, .5}, 99.72}, {{1, .5}, 85.66},  {{1.5, .5}, 68.05}, {{1, 1}, 74.38},
-      {{1.5, 1}, 59.98}, {{1.5, 1.5}, 49.38}};
+  const std::pair<Vec2, double> table[] = {{{0, 0}, 111.11},   {{.5, 0}, 105.19}, {{1, 0}, 90.00},
+                                           {{1.5, 0}, 71.11},  {{.5, .5}, 99.72}, {{1, .5}, 85.66},
+                                           {{1.5, .5}, 68.05}, {{1, 1}, 74.38},   {{1.5, 1}, 59.98},
+                                           {{1.5, 1.5}, 49.38}};
   std::vector<Vec3> places;
   for (const auto& [at, lux] : table) places.emplace_back(at.x, at.y, 0);
   const std::vector<double> lux =
@@ -74,8 +73,11 @@ TEST_F(PhotometricPatches, ASkewedLampLightsEachQuadrantAsItsFileSays) {
   IesLamp lamp;
   lamp.vertical = {0, 30, 60, 90};
   lamp.horizontal = {0, 90, 180, 270, 360};
-  const double rows[4][4] = {{100, 80, 40, 0}, {100, 200, 60, 10}, {100, 50, 90, 0}, {100, 10, 5, 2}};
-  lamp.candela = [&](double v, double h) { return rows[std::lround(h / 90) % 4][std::lround(v / 30)]; };
+  const double rows[4][4] = {
+      {100, 80, 40, 0}, {100, 200, 60, 10}, {100, 50, 90, 0}, {100, 10, 5, 2}};
+  lamp.candela = [&](double v, double h) {
+    return rows[std::lround(h / 90) % 4][std::lround(v / 30)];
+  };
   const Light light = lightOfFile(lamp, ",at=0,0,5");
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     // 45 degrees off straight down, a third of the way from one plane to the next.
@@ -103,8 +105,8 @@ double cornerFactor(double a, double b, double c) {
 TEST_F(PhotometricPatches, ASquareNearByIsASquare) {
   const Light light = lightOfFile(cosineLamp(1000, "2 1 1 0"), ",at=0,0,3");
   const double exitance = std::numbers::pi * 1000;
-  const std::vector<double> lux =
-      luxAt(farFloor(), light, {{0, 0, 2.5}, {.5, .5, 2.5}, {1.5, .5, 2.5}, {0, 0, 0}, {0, 0, 2.9}});
+  const std::vector<double> lux = luxAt(
+      farFloor(), light, {{0, 0, 2.5}, {.5, .5, 2.5}, {1.5, .5, 2.5}, {0, 0, 0}, {0, 0, 2.9}});
   // 64 ways of a net miss 1%: below the middle, below a corner, and beside it.
   EXPECT_NEAR(lux[0], exitance * 4 * cornerFactor(.5, .5, .5), 0.01 * lux[0]);
   EXPECT_NEAR(lux[1], exitance * cornerFactor(1, 1, .5), 0.01 * lux[1]);
@@ -143,7 +145,8 @@ TEST_F(PhotometricPatches, WhatIsInTheCeilingShinesInNoRoom) {
   test::SceneBuilder builder;
   builder.box(builder.surface("room"), Vec3(0.0), Vec3(4, 4, 3), false);
   const Scene scene = builder.scene();
-  // A plate of .5 m that stands on edge, half above the ceiling: C0 down, so that it is aimed aside.
+  // A plate of .5 m that stands on edge, half above the ceiling: C0 down, so that it is aimed
+  // aside.
   const Light hidden = lightOfFile(cosineLamp(1000, "2 .5 .5 0"), ",at=2,2,3,aim=4,2,3");
   const Light whole = lightOfFile(cosineLamp(1000, "2 .5 .5 0"), ",at=2,2,2.5,aim=4,2,2.5");
   const Vec3 wall(-1, 0, 0);

@@ -290,6 +290,8 @@ TEST(PageData, LightIsWithinThePagesErrorBound) {
   Made made(std::move(scene), 200);
   const auto light = made.page().header["lights"].at(0);
   EXPECT_EQ(light["name"], "sky");
+  EXPECT_EQ(light["kind"], "sky");
+  EXPECT_EQ(light["single"], true);
   EXPECT_EQ(light["strength"], (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(light["radiance"], (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(made.page().header["closed"], false);

@@ -174,7 +174,8 @@ TEST(Lights, AMaterialKeepsItsPropertiesBesideALightOfItsName) {
 }
 
 TEST(Lights, WhatIsNoLightIsRefusedInALine) {
-  EXPECT_EQ(refusal("lamp,1"), "light: no light is called 'lamp'; there are sky, point, spot, sun, ies");
+  EXPECT_EQ(refusal("lamp,1"),
+            "light: no light is called 'lamp'; there are sky, point, spot, sun, ies");
   EXPECT_EQ(refusal("point"),
             "light='point': '' is not one finite number or three with commas, W/sr (or cd)");
   EXPECT_EQ(refusal("point,1,x=3"),

@@ -29,9 +29,7 @@ class PhotometryFiles : public test::SceneFiles {
   Photometry ldt(const EulumdatLamp& lamp) const {
     return readPhotometry(write("lamp.ldt", lamp.text()));
   }
-  std::string refusedIes(const std::string& text) const {
-    return refused("lamp.ies", text);
-  }
+  std::string refusedIes(const std::string& text) const { return refused("lamp.ies", text); }
   std::string refusedLdt(const std::string& text) const { return refused("lamp.ldt", text); }
 
  private:
@@ -60,7 +58,8 @@ TEST_F(PhotometryFiles, HaveTheFluxOfTheirFunction) {
   lamp.candela = [](double v, double) { return 1000 * cosineOf(v); };
   // Straight lines between values of a cosine a degree apart are h^2 / 12 of it below it.
   const double between = std::pow(std::numbers::pi / 180, 2) / 12;
-  EXPECT_NEAR(ies(lamp).flux(), std::numbers::pi * 1000 * (1 - between), std::numbers::pi * 1000 * between / 100);
+  EXPECT_NEAR(ies(lamp).flux(), std::numbers::pi * 1000 * (1 - between),
+              std::numbers::pi * 1000 * between / 100);
 }
 
 // The sum over all cells against the midpoint rule over intensity(), which errs by h^2.
@@ -224,7 +223,8 @@ TEST_F(PhotometryFiles, FactorsAndUnitsCount) {
   lamp.factors = "0.5 1.10000 40";  // how it was made, no factor
   EXPECT_NEAR(straight(), 150, 150 * kSingle);
   EXPECT_TRUE(ies(lamp).notes.empty());
-  for (const char* version : {"IESNA91\n", "IESNA:LM-63-1995\r\n", "\xef\xbb\xbfIESNA:LM-63-2002\n"}) {
+  for (const char* version :
+       {"IESNA91\n", "IESNA:LM-63-1995\r\n", "\xef\xbb\xbfIESNA:LM-63-2002\n"}) {
     lamp.version = version;
     lamp.factors = "0.5 1 40";
     EXPECT_NEAR(straight(), 150, 150 * kSingle);
@@ -235,10 +235,10 @@ TEST_F(PhotometryFiles, FactorsAndUnitsCount) {
   lamp.version = "";
   lamp.tilt = "TILT=INCLUDE\n1\n3\n0 45 90\n1.0 1 1\n";
   EXPECT_NEAR(straight(), 120, 120 * kSingle);
-  EXPECT_EQ(readPhotometry(write("a.ies",
-                                 "TILT=NONE\n1,-1,1,\n2,1,1,2,0,0,0,1,1 ,0\r\n0,90,0\n5, 5\x1a"))
-                .candela,
-            std::vector<float>(2, 5));
+  EXPECT_EQ(
+      readPhotometry(write("a.ies", "TILT=NONE\n1,-1,1,\n2,1,1,2,0,0,0,1,1 ,0\r\n0,90,0\n5, 5\x1a"))
+          .candela,
+      std::vector<float>(2, 5));
 
   EulumdatLamp eulumdat;
   eulumdat.rows = eulumdat.around;
@@ -337,24 +337,29 @@ TEST_F(PhotometryFiles, OfIesThatAreNoneAreRefused) {
   };
   EXPECT_EQ(refusedIes(""), "lamp.ies: the file is empty; export it again");
   EXPECT_CONTAINS(refusedIes(std::string("\0\x01\xff\xfe binary", 11)), "has no line TILT=");
-  EXPECT_CONTAINS(with("TILT=NONE", "TILT=lamp.tlt"), "lamp.ies:3: TILT=lamp.tlt is a file of its own");
+  EXPECT_CONTAINS(with("TILT=NONE", "TILT=lamp.tlt"),
+                  "lamp.ies:3: TILT=lamp.tlt is a file of its own");
   EXPECT_CONTAINS(with("TILT=NONE", "TILT=INCLUDE\n1\n2\n0 90\n1 .9"), "write TILT=NONE");
-  EXPECT_CONTAINS(with("1 -1 1 2 1 1", "1 -1 1 1000000000 1 1"), "the file is too short for so many");
+  EXPECT_CONTAINS(with("1 -1 1 2 1 1", "1 -1 1 1000000000 1 1"),
+                  "the file is too short for so many");
   EXPECT_CONTAINS(with("1 -1 1 2 1 1", "1 -1 1 1e300 1 1"), "the file is too short for so many");
   EXPECT_CONTAINS(with("1 -1 1 2 1 1", "1 -1 1 2 9 1"), "the file is too short for so many");
   EXPECT_CONTAINS(with("1 -1 1 2 1 1", "1 -1 1 2 1.5 1"), "the number of horizontal angles is 1.5");
   EXPECT_CONTAINS(with("1 -1 1 2 1 1", "1 -1 0 2 1 1"), "the candela multiplier is 0");
   EXPECT_CONTAINS(with("1 -1 1 2 1 1", "1 -1 1 2 1 4"), "the type of photometry is 4; it is 1 (C)");
   EXPECT_CONTAINS(with("1 2 0 0 0", "1 3 0 0 0"), "the type of units is 3; it is 1 (feet) or 2");
-  EXPECT_CONTAINS(with("0 90\n", "90 0\n"), "lamp.ies:6: vertical angle 0 follows 90; angles ascend");
+  EXPECT_CONTAINS(with("0 90\n", "90 0\n"),
+                  "lamp.ies:6: vertical angle 0 follows 90; angles ascend");
   EXPECT_CONTAINS(with("0 90\n", "0 0\n"), "vertical angle 0 follows 0");
   EXPECT_CONTAINS(with("0 90\n", "0 85\n"), "vertical angles from 0 to 85; they go from 0 to 90");
-  EXPECT_CONTAINS(with("0 90\n0\n", "0 90\n45\n"), "horizontal angles from 45 to 45; they are 0 alone");
+  EXPECT_CONTAINS(with("0 90\n0\n", "0 90\n45\n"),
+                  "horizontal angles from 45 to 45; they are 0 alone");
   EXPECT_CONTAINS(with("\n100\n", "\nnan\n"), "candela `nan` is not a finite number");
   EXPECT_CONTAINS(with("\n100\n", "\ninf\n"), "candela `inf` is not a finite number");
   EXPECT_CONTAINS(with("\n100\n", "\n-3\n"), "lamp.ies:8: an intensity below 0, -3 cd");
   EXPECT_CONTAINS(with("\n100\n", "\n1e60\n"), "an intensity beyond all lamps");
-  EXPECT_CONTAINS(refusedIes(good.text() + "7\n"), "lamp.ies:10: more numbers than 2 vertical and 1");
+  EXPECT_CONTAINS(refusedIes(good.text() + "7\n"),
+                  "lamp.ies:10: more numbers than 2 vertical and 1");
   const std::string whole = good.text();
   for (std::size_t size = 1; size + 4 < whole.size(); ++size) {
     EXPECT_NE(refusedIes(whole.substr(0, size)), "") << size;
@@ -364,7 +369,8 @@ TEST_F(PhotometryFiles, OfIesThatAreNoneAreRefused) {
   EXPECT_EQ(refusedIes(dark.text()), "lamp.ies: all intensities are 0; export it again");
   IesLamp flood;
   flood.type = 2;
-  EXPECT_CONTAINS(refusedIes(flood.text()), "vertical angles of type B from 0 to 90; they go from -90");
+  EXPECT_CONTAINS(refusedIes(flood.text()),
+                  "vertical angles of type B from 0 to 90; they go from -90");
   EXPECT_CONTAINS(test::inputErrorOf([&] { readPhotometry(path("none.ies")); }), "no such file");
   EXPECT_CONTAINS(test::inputErrorOf([&] { readPhotometry(write("a.txt", "1")); }),
                   "a.txt: is no file of a lamp; give one of IES LM-63 (.ies) or EULUMDAT (.ldt)");
@@ -382,7 +388,8 @@ TEST_F(PhotometryFiles, OfEulumdatThatAreNoneAreRefused) {
   };
   EXPECT_EQ(refusedLdt(""), "lamp.ldt: the file is empty; export it again");
   EXPECT_CONTAINS(refusedLdt("\n\n"), "ends before the symmetry, line 3");
-  EXPECT_CONTAINS(refusedLdt(std::string("\0\x01\xff\xfe\n\n7\n", 8)), "the symmetry is 7; it is 0 to 4");
+  EXPECT_CONTAINS(refusedLdt(std::string("\0\x01\xff\xfe\n\n7\n", 8)),
+                  "the symmetry is 7; it is 0 to 4");
   EXPECT_CONTAINS(with(3, "5"), "lamp.ldt:3: the symmetry is 5; it is 0 to 4");
   EXPECT_CONTAINS(with(4, "1000000000"), "the file ends here, and 1000000000 C-planes");
   EXPECT_CONTAINS(with(6, "1000000000"), "intensities take more lines");

@@ -348,6 +348,53 @@ TEST_F(SceneGltf, ReadsLights) {
   EXPECT_NOTE(scene.notes, "taken at 683 lm/W: light0, light1, light2", Severity::info);
 }
 
+/// 400 cd to C0, 300 to C90, 200 to C180, 100 to C270.
+constexpr const char* kQuarters =
+    "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 5 1 2 0 0 0\n1 1 0\n0 180\n0 90 180 270 360\n"
+    "400 400 300 300 200 200 100 100 400 400\n";
+
+// An untransformed light points along -z, the plane of C0 is that of x and z, and horizontal angles
+// go counter-clockwise; this one is turned by 90 degrees about y, so that -z becomes -x and x -z.
+TEST_F(SceneGltf, ReadsLampsWithProfiles) {
+  Document d = triangle();
+  write("my lamp.ies", kQuarters);
+  d.json["extensionsUsed"] = {"EXT_lights_ies"};
+  d.json["extensions"]["EXT_lights_ies"]["lights"] = {
+      {{"uri", "my%20lamp.ies"}},
+      {{"uri", "data:application/x-ies-lm-63;base64," + test::base64(kQuarters)}}};
+  for (int k = 0; k < 2; ++k) {
+    d.json["scenes"][0]["nodes"].push_back(d.json["nodes"].size());
+    Json extension = {{"light", k}};
+    if (k == 1) extension.update({{"multiplier", 2}, {"color", {1, .5, 0}}});
+    d.json["nodes"].push_back({{"name", "lamp" + std::to_string(k)},
+                               {"translation", {1, 2, 3}},
+                               {"rotation", {0, std::sqrt(.5), 0, std::sqrt(.5)}},
+                               {"scale", {10, 10, 10}},
+                               {"extensions", {{"EXT_lights_ies", extension}}}});
+  }
+  const Scene scene = load(d);
+  ASSERT_EQ(scene.lights.size(), 3u);  // the sky
+  const Light& lamp = scene.lights[1];
+  EXPECT_EQ(lamp.fileName(), "my lamp.ies");
+  const double watts = 1000 * std::numbers::pi / kLumensPerWatt;  // 250 cd in the mean
+  EXPECT_NEAR(lamp.strength[0], watts, 1e-6);
+  const std::pair<Vec3, double> around[] = {
+      {{0, 0, -1}, 400}, {{0, 1, 0}, 300}, {{0, 0, 1}, 200}, {{0, -1, 0}, 100}};
+  for (const auto& [side, candela] : around) {
+    const Vec3 way = side + Vec3(-1, 0, 0);
+    const LightRay ray = lamp.ray(Vec3(1, 2, 3) + way, 0, 0);
+    EXPECT_NEAR(ray.share * glm::dot(way, way) * lamp.strength[0] * kLumensPerWatt, candela, 1e-3);
+  }
+  EXPECT_EQ(scene.lights[2].name, "lamp1");
+  EXPECT_NEAR(scene.lights[2].strength[1], watts, 1e-6);
+  EXPECT_EQ(scene.lights[2].strength[2], 0);
+  d.json["nodes"][1]["extensions"]["EXT_lights_ies"]["light"] = 7;
+  EXPECT_CONTAINS(errorOf(d), "node lamp0: its light profile does not exist");
+  d.json["nodes"][1]["extensions"]["EXT_lights_ies"]["light"] = 0;
+  d.json["extensions"]["EXT_lights_ies"]["lights"][0]["uri"] = "other.ies";
+  EXPECT_CONTAINS(errorOf(d), "other.ies: no such file");
+}
+
 TEST_F(SceneGltf, RefusesLightsThatAreNone) {
   EXPECT_CONTAINS(errorOf(withLights(triangle(), {{{"type", "point"}, {"intensity", -1}}})),
                   "is not a finite value of 0 or more");

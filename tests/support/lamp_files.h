@@ -63,7 +63,7 @@ struct EulumdatLamp {
   int symmetry = 0;
   std::vector<double> around = anglesBy(0, 345, 15);
   std::vector<double> gamma = anglesBy(0, 180, 15);
-  std::vector<double> rows;  ///< C angles of which intensities are there
+  std::vector<double> rows;                 ///< C angles of which intensities are there
   std::string area = "0\n0\n0\n0\n0\n0\n";  ///< length, width, heights of the luminous area, mm
   std::string ratio = "100";
   std::string conversion = "1";

@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kWays = 16;
 constexpr std::size_t kMoreWays = 64;
 constexpr double kUneven = 0.2;
-/// ... and the most where it is a tenth of its size away. Then a square is right to 1% down to that.
+/// ... and the most where it is a tenth of its size away. Then a square is right to 1% down to
+/// that.
 constexpr std::size_t kMostWays = 1024;
 constexpr double kVeryUneven = 2;
 /// Points of a patch, in each of two halves: at first, then as many as the tolerance takes. Shadows

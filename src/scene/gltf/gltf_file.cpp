@@ -10,6 +10,7 @@
 #include "base/input_file.h"
 #include "scene/gltf/glb_chunks.h"
 #include "scene/gltf/gltf_compression.h"
+#include "scene/gltf/gltf_photometry.h"
 #include "scene/gltf/gltf_preflight.h"
 #include "scene/text.h"
 
@@ -152,13 +153,14 @@ void parse(const std::string& content, GltfFile& file) {
 }  // namespace
 
 bool isSupportedGltfExtension(const std::string& name) {
-  constexpr std::array<std::string_view, 7> kSupported = {"KHR_materials_emissive_strength",
+  constexpr std::array<std::string_view, 8> kSupported = {"KHR_materials_emissive_strength",
                                                           "KHR_texture_transform",
                                                           "KHR_mesh_quantization",
                                                           "KHR_materials_pbrSpecularGlossiness",
                                                           "EXT_texture_webp",
                                                           "EXT_mesh_gpu_instancing",
-                                                          kGltfLights};
+                                                          kGltfLights,
+                                                          kGltfPhotometry};
   return isGltfCompression(name) ||
          std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
 }

@@ -10,6 +10,7 @@
 #include "base/finite.h"
 #include "scene/gltf/gltf_materials.h"
 #include "scene/gltf/gltf_nodes.h"
+#include "scene/gltf/gltf_photometry.h"
 #include "scene/gltf/gltf_placement.h"
 #include "scene/readers.h"
 #include "scene/text.h"
@@ -42,6 +43,8 @@ class Reader {
                 Index surface);
   void readCamera(const tinygltf::Node& node, const Transform& transform);
   void readLight(const tinygltf::Node& node, const Transform& transform);
+  void readPhotometricLight(const tinygltf::Node& node, const Transform& transform);
+  void addChecked(Light light, const std::string& what);
   std::vector<Index> addVertices(const std::vector<Vec3>& positions);
   std::vector<Vec3> readColours(const tinygltf::Primitive& primitive, Index material,
                                 const std::string& object, const std::string& what);
@@ -96,6 +99,7 @@ void Reader::readNode(int index, const Transform& transform, const std::string& 
   if (node.mesh >= 0) readMesh(index);
   if (node.camera >= 0) readCamera(node, transform);
   if (node.extensions.contains(kGltfLights)) readLight(node, transform);
+  if (node.extensions.contains(kGltfPhotometry)) readPhotometricLight(node, transform);
   for (const auto& [extension, value] : node.extensions) {
     if (isSupportedGltfExtension(extension)) continue;
     ignored_.add(extension + " is not used, node", what.substr(5), Severity::warning);
@@ -306,13 +310,27 @@ void Reader::readLight(const tinygltf::Node& node, const Transform& transform) {
     const double colour = gltf.color.size() == light.strength.size() ? gltf.color[b] : 1;
     light.strength[b] = gltf.intensity * colour / kLumensPerWatt;
   }
+  ignored_.add(fmt::format("lamps in candela and lux, taken at {} lm/W", kLumensPerWatt),
+               light.name);
+  addChecked(std::move(light), what);
+}
+
+void Reader::readPhotometricLight(const tinygltf::Node& node, const Transform& transform) {
+  const std::string what = "node " + node.name;
+  Light light = gltfPhotometricLight(file_, node, transform, what);
+  light.name = light_names_.make(node.name.empty() ? light.fileName() : node.name);
+  for (std::string& remark : light.remarks()) {
+    scene_.notes.push_back({Severity::warning, std::move(remark)});
+  }
+  addChecked(std::move(light), what);
+}
+
+void Reader::addChecked(Light light, const std::string& what) {
   try {
     light.validate();
   } catch (const InputError& error) {
     file_.fail(fmt::format("{}: {}; correct the light", what, error.what()));
   }
-  ignored_.add(fmt::format("lamps in candela and lux, taken at {} lm/W", kLumensPerWatt),
-               light.name);
   setLight(scene_.lights, std::move(light));
 }
 

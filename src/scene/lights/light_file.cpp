@@ -95,8 +95,8 @@ class LightList {
   }
 
   [[noreturn]] void refuse(const std::string& name) const {
-    fail(fmt::format("light {}: {} is no number, list of numbers or text; give one",
-                     listed_.size(), printable(name)));
+    fail(fmt::format("light {}: {} is no number, list of numbers or text; give one", listed_.size(),
+                     printable(name)));
   }
 
   std::string path_;

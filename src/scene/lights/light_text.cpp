@@ -129,7 +129,8 @@ class Reading {
   void takeUsual() {
     const double usual = std::visit(
         [](const auto& of) {
-          if constexpr (!requires { of.usual(); }) return of.kTraits.usual;
+          if constexpr (!requires { of.usual(); })
+            return of.kTraits.usual;
           else {
             of.validate();
             return of.usual();
@@ -263,7 +264,8 @@ std::string parametersOf(const Light& light, bool brief) {
     }
     if (!is_usual && !(brief && *line.help == '\0')) text += "," + line.optionName() + "=" + now;
   });
-  if (light.name != light.traits().word) text += fmt::format(",{}={}", kName, encodedText(light.name));
+  if (light.name != light.traits().word)
+    text += fmt::format(",{}={}", kName, encodedText(light.name));
   return text;
 }
 

@@ -30,7 +30,7 @@ struct OpeningFace {
   }
 };
 
-constexpr double kFar = 5;  // sizes; PhotometricLight::isWide()
+constexpr double kFar = 10;  // sizes; PhotometricLight::isWide()
 
 /// The opening as a convex body: a box, a cylinder along z, or what is left of these where it is
 /// flat.
@@ -46,18 +46,27 @@ class OpeningBody {
     return level + 4 * half_.z * (half_.y * d.x + half_.x * d.y);
   }
 
+  /// Up to three.
+  struct Faces {
+    std::array<OpeningFace, 3> all;
+    std::size_t count = 0;
+  };
   /// Those that face a place.
-  std::array<OpeningFace, 3> facesTo(const Vec3& place, std::size_t& count) const {
-    std::array<OpeningFace, 3> faces;
-    count = 0;
+  Faces facesTo(const Vec3& place) const {
+    Faces faces;
     const auto add = [&](const OpeningFace& face) {
-      if (face.area > 0 && glm::dot(place - face.middle, face.normal) > 0) faces[count++] = face;
+      if (!(face.area > 0) || !(glm::dot(place - face.middle, face.normal) > 0)) return;
+      faces.all[faces.count++] = face;
     };
     const Vec3 side = glm::sign(place);
     const Vec3 x(half_.x, 0, 0);
     const Vec3 y(0, half_.y, 0);
     const Vec3 z(0, 0, half_.z);
-    add({side.z * z, x, y, {0, 0, side.z}, (round_ ? std::numbers::pi : 4.0) * half_.x * half_.y,
+    add({side.z * z,
+         x,
+         y,
+         {0, 0, side.z},
+         (round_ ? std::numbers::pi : 4.0) * half_.x * half_.y,
          round_});
     if (round_) {
       const double off = std::hypot(place.x, place.y);
@@ -127,8 +136,7 @@ LightRay PhotometricLight::ray(const Vec3& place, double u, double v) const {
   double share = 1 / file.flux();
   if (isWide(place)) {
     const OpeningBody body(table);
-    std::size_t count = 0;
-    const auto faces = body.facesTo(to, count);
+    const auto [faces, count] = body.facesTo(to);
     double whole = 0;
     std::array<double, 3> shown{};
     for (std::size_t k = 0; k < count; ++k) {

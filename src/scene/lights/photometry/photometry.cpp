@@ -50,8 +50,8 @@ struct Between {
 /// Within the first and the last angle.
 Between betweenAngles(std::span<const double> angles, double angle) {
   const auto above = std::ranges::upper_bound(angles, angle) - angles.begin();
-  const auto first = std::size_t(std::clamp<std::ptrdiff_t>(above - 1, 0,
-                                                            std::ptrdiff_t(angles.size()) - 2));
+  const auto first =
+      std::size_t(std::clamp<std::ptrdiff_t>(above - 1, 0, std::ptrdiff_t(angles.size()) - 2));
   return {first, (angle - angles[first]) / (angles[first + 1] - angles[first])};
 }
 
@@ -161,8 +161,7 @@ std::vector<std::string> Photometry::remarks() const {
     if (std::abs(whole - stated) <= kApart * stated) return all;
     all.push_back(fmt::format("its table gives {:.6g} lm, and it states {:.6g} lm", whole, stated));
   } else if (lamps > 0 && whole > (1 + kApart) * lamps) {
-    all.push_back(
-        fmt::format("its table gives {:.6g} lm, and its lamps {:.6g} lm", whole, lamps));
+    all.push_back(fmt::format("its table gives {:.6g} lm, and its lamps {:.6g} lm", whole, lamps));
   }
   return all;
 }

@@ -59,8 +59,8 @@ class EulumdatReader {
   /// Lines count from 1, as the format's description does.
   std::string_view line(std::size_t number, const char* what) const {
     if (number <= lines_.size()) return trimmed(lines_[number - 1]);
-    fail(lines_.size(), fmt::format("the file ends before {}, line {}; export it again", what,
-                                    number));
+    fail(lines_.size(),
+         fmt::format("the file ends before {}, line {}; export it again", what, number));
   }
 
   /// A comma may stand for the point.
@@ -123,7 +123,8 @@ class EulumdatReader {
     for (std::size_t k = 0; k < sets; ++k, at_ += kLinesOfSet) {
       number(at_ + 1, "the number of lamps");
       const double flux = number(at_ + kFluxInSet, "the lumens of the lamps");
-      if (!(flux > 0)) fail(at_ + kFluxInSet, "the lumens of the lamps are not above 0; correct it");
+      if (!(flux > 0))
+        fail(at_ + kFluxInSet, "the lumens of the lamps are not above 0; correct it");
       lumens += flux;
     }
     if (sets > 1) {
@@ -149,13 +150,14 @@ class EulumdatReader {
   /// Before anything of the given size is kept.
   void requireLines(std::size_t planes, std::size_t angles, std::size_t rows) const {
     const std::size_t needed = at_ + planes + angles;
-    const bool fits = needed <= lines_.size() && rows <= lines_.size() &&
-                      angles <= lines_.size() && needed + rows * angles <= lines_.size();
+    const bool fits = needed <= lines_.size() && rows <= lines_.size() && angles <= lines_.size() &&
+                      needed + rows * angles <= lines_.size();
     if (!fits) {
       fail(lines_.size(),
-           fmt::format("the file ends here, and {} C-planes, {} gamma angles and {} x {} intensities "
-                       "take more lines; export it again",
-                       planes, angles, rows, angles));
+           fmt::format(
+               "the file ends here, and {} C-planes, {} gamma angles and {} x {} intensities "
+               "take more lines; export it again",
+               planes, angles, rows, angles));
     }
     if (needed + rows * angles < lines_.size()) {
       fail(needed + rows * angles + 1,
@@ -234,7 +236,7 @@ class EulumdatReader {
 }  // namespace
 
 Photometry readEulumdat(const std::string& file, std::string_view content) {
-  return EulumdatReader(file, content).read();
+  return checkedTable(file, EulumdatReader(file, content).read());
 }
 
 }  // namespace radiosity

@@ -87,10 +87,11 @@ class IesReader {
       tilt.erase(0, tilt.find_first_not_of(' '));
       if (tilt == "include") return readTilt();
       if (tilt == "none") return;
-      cursor_.fail(fmt::format(
-          "TILT={} is a file of its own, which is not read; write TILT=NONE if the lamp hangs as it "
-          "was measured",
-          printable(tilt)));
+      cursor_.fail(
+          fmt::format("TILT={} is a file of its own, which is not read; write TILT=NONE if the "
+                      "lamp hangs as it "
+                      "was measured",
+                      printable(tilt)));
     }
   }
 
@@ -140,8 +141,8 @@ class IesReader {
     table_.type = type == 2 ? PhotometryType::b : PhotometryType::a;
   }
 
-  /// LM-63-1995 and -2002: a negative width or length is of an ellipse, a length of 0 beside it of a
-  /// circle; a negative height of a body that is round in that direction, too. Its box is taken.
+  /// LM-63-1995 and -2002: a negative width or length is of an ellipse, a length of 0 beside it of
+  /// a circle; a negative height of a body that is round in that direction, too. Its box is taken.
   /// The length lies in the plane of horizontal angle 0, the width across it.
   void readOpening() {
     const double units = number("the type of units");
@@ -185,8 +186,8 @@ class IesReader {
     }
     constexpr double kOneTurn = 360;
     if (std::max(-angles.front(), angles.back()) > kOneTurn) {
-      cursor_.fail(fmt::format("{}s go from {} to {}; correct them", named, angles.front(),
-                               angles.back()));
+      cursor_.fail(
+          fmt::format("{}s go from {} to {}; correct them", named, angles.front(), angles.back()));
     }
   }
 
@@ -247,8 +248,8 @@ class IesReader {
     }
   }
 
-  /// 0 alone: alike all around. 0 to 90: symmetric in each quadrant. 0 to 180 and 90 to 270: on both
-  /// sides of the plane of these. Else a whole turn, the first plane at its end or not.
+  /// 0 alone: alike all around. 0 to 90: symmetric in each quadrant. 0 to 180 and 90 to 270: on
+  /// both sides of the plane of these. Else a whole turn, the first plane at its end or not.
   void checkHorizontal() {
     const double first = angles_.front();
     const double last = angles_.back();
@@ -289,7 +290,7 @@ class IesReader {
   double factor_ = 1;
   std::size_t vertical_count_ = 0;
   std::size_t horizontal_count_ = 0;
-  std::vector<double> angles_;  ///< horizontal ones, as they stand there
+  std::vector<double> angles_;   ///< horizontal ones, as they stand there
   std::vector<double> mirrors_;  ///< planes of symmetry
   std::vector<std::vector<float>> rows_;
 };
@@ -297,7 +298,7 @@ class IesReader {
 }  // namespace
 
 Photometry readIes(const std::string& file, std::string_view content) {
-  return IesReader(file, content).read();
+  return checkedTable(file, IesReader(file, content).read());
 }
 
 }  // namespace radiosity

@@ -13,6 +13,15 @@ bool isVerticalRange(double first, double last) {
   return (first == 0 || first == 90) && (last == 90 || last == 180) && first < last;
 }
 
+Photometry checkedTable(const std::string& file, Photometry table) {
+  try {
+    table.validate();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}; export it again", file, error.what()));
+  }
+  return table;
+}
+
 Photometry readPhotometry(const std::string& path) {
   requireFile(path);
   const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
@@ -29,14 +38,7 @@ Photometry readPhotometry(const std::string& path) {
                                  path, size >> 20U, kMostBytes >> 20U));
   }
   const std::string content = readWholeFile(path);
-  Photometry table =
-      extension == ".ies" ? readIes(path, content) : readEulumdat(path, content);
-  try {
-    table.validate();
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}; export it again", path, error.what()));
-  }
-  return table;
+  return extension == ".ies" ? readIes(path, content) : readEulumdat(path, content);
 }
 
 }  // namespace radiosity

@@ -9,10 +9,13 @@
 
 namespace radiosity {
 
-/// IES LM-63. `content` is all of the file, `file` its name in errors.
+/// IES LM-63. `content` is all of the file, `file` its name in errors. The table is valid.
 Photometry readIes(const std::string& file, std::string_view content);
 /// EULUMDAT.
 Photometry readEulumdat(const std::string& file, std::string_view content);
+
+/// The table, if it is valid; else InputError with the file's name.
+Photometry checkedTable(const std::string& file, Photometry table);
 
 /// Whether vertical angles of type C cover what the formats have: 0 to 90, 90 to 180, or both.
 bool isVerticalRange(double first, double last);
@@ -21,7 +24,8 @@ inline constexpr const char* kVerticalRanges =
 /// cd as tables keep them. Calls fail(what, value), which throws, for one below 0 or too large.
 float candelaOf(double value, const auto& fail) {
   if (value < 0) fail("an intensity below 0", value);
-  if (value > double(std::numeric_limits<float>::max())) fail("an intensity beyond all lamps", value);
+  if (value > double(std::numeric_limits<float>::max()))
+    fail("an intensity beyond all lamps", value);
   return float(value);
 }
 

@@ -1,0 +1,92 @@
+#include "scene/gltf/gltf_photometry.h"
+
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "base/base64.h"
+#include "base/finite.h"
+#include "scene/lights/light_text.h"
+#include "scene/lights/photometry/readers.h"
+
+namespace radiosity {
+
+namespace {
+
+/// An embedded file has no name of its own.
+LampFile embedded(const GltfFile& file, const std::string& name, std::string_view content) {
+  return {name, readIes(fmt::format("{}: {}", file.path, name), content)};
+}
+
+LampFile profileOf(const GltfFile& file, const tinygltf::Value& profile, const std::string& name) {
+  const tinygltf::Value& view = memberOf(profile, "bufferView");
+  if (view.IsInt()) {
+    tinygltf::Image bytes;
+    bytes.bufferView = view.GetNumberAsInt();
+    const std::span<const unsigned char> content = file.imageBytes(bytes, name);
+    return embedded(file, name, {reinterpret_cast<const char*>(content.data()), content.size()});
+  }
+  const tinygltf::Value& given = memberOf(profile, "uri");
+  if (!given.IsString()) file.fail(name + " has neither uri nor bufferView; export it again");
+  const std::string& uri = given.Get<std::string>();
+  if (uri.starts_with("data:")) {
+    const std::size_t begin = uri.find(";base64,");
+    const std::optional<std::string> content =
+        begin == uri.npos ? std::nullopt : ofBase64(std::string_view(uri).substr(begin + 8));
+    if (!content) file.fail(name + " has data that is not base64; export it again");
+    return embedded(file, name, *content);
+  }
+  const std::filesystem::path path =
+      std::filesystem::path(file.path).parent_path() / decodedText(uri);
+  return {path.filename().string(), readPhotometry(path.string())};
+}
+
+/// The turn that brings a lamp's frame to that of a node, degrees. Its x lies in the plane of
+/// horizontal angle 0: that of C0, and of the vertical angles of types A and B, whose y it is.
+double turnTo(const PhotometricLight& lamp, const Vec3& x) {
+  const auto& [x0, y0, z0] = lamp.axes();
+  const bool of_c = lamp.file.table().type == PhotometryType::c;
+  const double angle = of_c ? std::atan2(glm::dot(x, y0), glm::dot(x, x0))
+                            : std::atan2(-glm::dot(x, x0), glm::dot(x, y0));
+  return angle * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+Light gltfPhotometricLight(const GltfFile& file, const tinygltf::Node& node,
+                           const glm::dmat4& transform, const std::string& what) {
+  const tinygltf::Value& given = node.extensions.at(kGltfPhotometry);
+  const tinygltf::Value& number = memberOf(given, "light");
+  const auto extension = file.model.extensions.find(kGltfPhotometry);
+  static const tinygltf::Value kNone;
+  const tinygltf::Value& all =
+      extension == file.model.extensions.end() ? kNone : memberOf(extension->second, "lights");
+  if (!number.IsInt() || !all.IsArray() || number.GetNumberAsInt() < 0 ||
+      std::size_t(number.GetNumberAsInt()) >= all.ArrayLen()) {
+    file.fail(what + ": its light profile does not exist; export the scene again");
+  }
+  const int index = number.GetNumberAsInt();
+  PhotometricLight lamp;
+  lamp.file = profileOf(file, all.Get(index), fmt::format("light profile {}", index));
+  const Vec3 forward(transform * glm::dvec4(0, 0, -1, 0));
+  const Vec3 side(transform * glm::dvec4(1, 0, 0, 0));
+  lamp.at = Vec3(transform[3]);
+  if (!isFinite(lamp.at) || !isFinite(forward) || !isFinite(side) || !(glm::length(forward) > 0) ||
+      !(glm::length(side) > 0)) {
+    file.fail(what + ": its lamp has no place and direction; correct its transform");
+  }
+  lamp.aim = lamp.at + glm::normalize(forward);
+  lamp.settle(Up::y);
+  lamp.turn = turnTo(lamp, glm::normalize(side));
+  const tinygltf::Value& multiplier = memberOf(given, "multiplier");
+  const tinygltf::Value& colour = memberOf(given, "color");
+  const double flux = lamp.usual() * (multiplier.IsNumber() ? multiplier.GetNumberAsDouble() : 1);
+  Light light{"", std::move(lamp), std::vector<double>(3, flux)};
+  for (int band = 0; band < 3 && colour.IsArray() && colour.ArrayLen() == 3; ++band) {
+    light.strength[std::size_t(band)] *= colour.Get(band).GetNumberAsDouble();
+  }
+  return light;
+}
+
+}  // namespace radiosity
