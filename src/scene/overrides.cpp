@@ -243,6 +243,7 @@ void Overrides::replace(Light light, Up up) {
                    describeBands(coloursOf(light)), traits.unit,
                    stands.empty() ? traits.from : stands));
   for (std::string& remark : light.remarks()) {
+    if (std::ranges::find(scene_.notes, remark, &Note::text) != scene_.notes.end()) continue;
     scene_.notes.push_back({Severity::warning, std::move(remark)});
   }
   setLight(scene_.lights, std::move(light));

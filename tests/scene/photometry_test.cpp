@@ -229,7 +229,7 @@ TEST_F(PhotometryFiles, FactorsAndUnitsCount) {
     lamp.factors = "0.5 1 40";
     EXPECT_NEAR(straight(), 150, 150 * kSingle);
   }
-  lamp.version = "A lamp, by hand\n";
+  lamp.version = "Series of lamps, by hand\n";
   lamp.factors = "0.5 0.8 40";
   EXPECT_NEAR(straight(), 120, 120 * kSingle);
   lamp.version = "";
@@ -398,7 +398,8 @@ TEST_F(PhotometryFiles, OfEulumdatThatAreNoneAreRefused) {
   EXPECT_CONTAINS(with(26, "0"), "the number of sets of lamps is 0; give a whole number from 1");
   EXPECT_CONTAINS(with(29, "0"), "lamp.ldt:29: the lumens of the lamps are not above 0");
   EXPECT_CONTAINS(with(45, "1"), "C angle 1 follows 15");
-  EXPECT_CONTAINS(with(43, "1"), "C angles begin at 1; they go round from 0");
+  EXPECT_CONTAINS(with(43, "1"),
+                  "intensities from C1 to C360 with the symmetry 0; they go from C0 to C360");
   EXPECT_CONTAINS(with(67, "20"), "gamma angle 15 follows 20");
   EXPECT_CONTAINS(with(79, "170"), "gamma angles from 0 to 170; they go from 0 to 90");
   EXPECT_CONTAINS(with(90, "-1"), "lamp.ldt:90: an intensity below 0, -1 cd");

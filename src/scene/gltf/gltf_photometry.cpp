@@ -42,6 +42,13 @@ LampFile profileOf(const GltfFile& file, const tinygltf::Value& profile, const s
   return {path.filename().string(), readPhotometry(path.string())};
 }
 
+const tinygltf::Value& profilesOf(const GltfFile& file) {
+  static const tinygltf::Value kNoProfiles;
+  const auto extension = file.model.extensions.find(kGltfPhotometry);
+  if (extension == file.model.extensions.end()) return kNoProfiles;
+  return memberOf(extension->second, "lights");
+}
+
 /// The turn that brings a lamp's frame to that of a node, degrees. Its x lies in the plane of
 /// horizontal angle 0: that of C0, and of the vertical angles of types A and B, whose y it is.
 double turnTo(const PhotometricLight& lamp, const Vec3& x) {
@@ -58,10 +65,7 @@ Light gltfPhotometricLight(const GltfFile& file, const tinygltf::Node& node,
                            const glm::dmat4& transform, const std::string& what) {
   const tinygltf::Value& given = node.extensions.at(kGltfPhotometry);
   const tinygltf::Value& number = memberOf(given, "light");
-  const auto extension = file.model.extensions.find(kGltfPhotometry);
-  static const tinygltf::Value kNone;
-  const tinygltf::Value& all =
-      extension == file.model.extensions.end() ? kNone : memberOf(extension->second, "lights");
+  const tinygltf::Value& all = profilesOf(file);
   if (!number.IsInt() || !all.IsArray() || number.GetNumberAsInt() < 0 ||
       std::size_t(number.GetNumberAsInt()) >= all.ArrayLen()) {
     file.fail(what + ": its light profile does not exist; export the scene again");

@@ -217,14 +217,14 @@ class EulumdatReader {
   void requirePlanes(std::size_t symmetry, const std::vector<double>& around, std::size_t first,
                      std::size_t rows) const {
     constexpr double kFrom[] = {0, 0, 0, 270, 0};
-    constexpr double kTo[] = {0, 0, 180, 90, 90};
+    constexpr double kTo[] = {360, 360, 180, 90, 90};
     const double from = around[first];
-    const double to = around[(first + rows - 1) % around.size()];
-    if (from == kFrom[symmetry] && (symmetry == 0 || to == kTo[symmetry])) return;
-    fail(at_, symmetry == 0 ? fmt::format("C angles begin at {}; they go round from 0", from)
-                            : fmt::format("intensities from C{} to C{} with the symmetry {}; they "
-                                          "go from C{} to C{}",
-                                          from, to, symmetry, kFrom[symmetry], kTo[symmetry]));
+    double to = around[(first + rows - 1) % around.size()];
+    if (symmetry == 0 && kTo[0] - to <= widestStep(around)) to = kTo[0];
+    if (from == kFrom[symmetry] && to == kTo[symmetry]) return;
+    fail(at_,
+         fmt::format("intensities from C{} to C{} with the symmetry {}; they go from C{} to C{}",
+                     from, to, symmetry, kFrom[symmetry], kTo[symmetry]));
   }
 
   std::string file_;

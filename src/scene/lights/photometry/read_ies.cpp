@@ -16,8 +16,9 @@ namespace radiosity {
 namespace {
 
 constexpr double kMetresPerFoot = 0.3048;
-/// DOS ends a text with it.
+/// DOS ends a text with the one, Windows begins one with the other.
 constexpr char kEndOfText = 0x1a;
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 /// Numbers are separated by blanks or commas.
 std::string withoutCommas(std::string_view content) {
@@ -77,10 +78,11 @@ class IesReader {
             "{}: has no line TILT=, which stands before the numbers of IES LM-63; export it again",
             file_));
       }
-      const std::string line = lowerCase(cursor_.nextLine());
-      if (first && line.find("ies") <= 3) {  // after a mark of the byte order
-        has_version_ = true;
-        is_2019_ = line.find("2019") != line.npos;
+      std::string line = lowerCase(cursor_.nextLine());
+      if (first) {
+        if (line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
+        has_version_ = line.starts_with("iesna") || line.starts_with("ies:");
+        is_2019_ = has_version_ && line.find("2019") != line.npos;
       }
       if (!line.starts_with("tilt=")) continue;
       std::string tilt = line.substr(5);
@@ -256,15 +258,11 @@ class IesReader {
     if (table_.type != PhotometryType::c) {
       return checkAhead("horizontal", first == 0 ? -last : first, last);
     }
-    double step = 0;
-    for (std::size_t k = 1; k < angles_.size(); ++k) {
-      step = std::max(step, angles_[k] - angles_[k - 1]);
-    }
     if (first == 0 && (last == 90 || last == 180)) {
       mirrors_ = last == 90 ? std::vector<double>{90, 0} : std::vector<double>{0};
     } else if (first == 90 && last == 270) {
       mirrors_ = {90};
-    } else if (first != 0 || (last > 0 && (last < 180 || 360 - last > step))) {
+    } else if (first != 0 || (last > 0 && (last < 180 || 360 - last > widestStep(angles_)))) {
       cursor_.fail(
           fmt::format("horizontal angles from {} to {}; they are 0 alone, or go from 0 to 90, 0 to "
                       "180, 90 to 270 or 0 to 360",

@@ -1,6 +1,7 @@
 // Photometric files, their format told by the extension.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/input_file.h"
@@ -11,6 +12,14 @@ namespace radiosity {
 
 bool isVerticalRange(double first, double last) {
   return (first == 0 || first == 90) && (last == 90 || last == 180) && first < last;
+}
+
+double widestStep(std::span<const double> ascending) {
+  double widest = 0;
+  for (std::size_t k = 1; k < ascending.size(); ++k) {
+    widest = std::max(widest, ascending[k] - ascending[k - 1]);
+  }
+  return widest;
 }
 
 Photometry checkedTable(const std::string& file, Photometry table) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,8 @@ Photometry checkedTable(const std::string& file, Photometry table);
 bool isVerticalRange(double first, double last);
 inline constexpr const char* kVerticalRanges =
     "they go from 0 to 90, 90 to 180 or 0 to 180; add intensities of 0 where it is dark";
+/// Between neighbours. A turn without its end is whole if what is left to it is no wider.
+double widestStep(std::span<const double> ascending);
 /// cd as tables keep them. Calls fail(what, value), which throws, for one below 0 or too large.
 float candelaOf(double value, const auto& fail) {
   if (value < 0) fail("an intensity below 0", value);
