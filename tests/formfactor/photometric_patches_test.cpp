@@ -116,6 +116,27 @@ TEST_F(PhotometricPatches, ASquareNearByIsASquare) {
   EXPECT_NEAR(lux[4], exitance * 4 * cornerFactor(.5, .5, .1), 0.02 * lux[4]);
 }
 
+// CIE 171:2006, case 5.3: a square metre flush with the ceiling of a room of 4 x 4 x 3 m, 1000 cd;
+// the values are those of the closed form.
+TEST_F(PhotometricPatches, APanelInTheCeilingLightsFloorAndWall) {
+  test::SceneBuilder builder;
+  builder.box(builder.surface("room"), Vec3(-2, -2, 0), Vec3(2, 2, 3), false);
+  const Scene scene = builder.scene();
+  const Light light = lightOfFile(cosineLamp(1000, "2 1 1 0"), ",at=0,0,3");
+  const auto compare = [&](const std::vector<Vec3>& places, const Vec3& normal,
+                           const std::vector<double>& truth) {
+    const std::vector<double> lux = luxAt(scene, light, places, normal);
+    // 16 ways of a net, or 64.
+    for (std::size_t k = 0; k < truth.size(); ++k) EXPECT_NEAR(lux[k], truth[k], 0.01 * truth[k]);
+  };
+  const double up = 1e-4;  // off the surface, which would stand in the way
+  compare({{.25, 0, up}, {.75, 0, up}, {1.25, 0, up}, {1.75, 0, up}}, {0, 0, 1},
+          {105.78, 95.67, 79.26, 61.42});
+  const double in = 2 - 1e-4;
+  compare({{in, 0, 2.75}, {in, 0, 2.25}, {in, 0, 1.75}, {in, 0, 1.25}, {in, 0, .75}, {in, 0, .25}},
+          {-1, 0, 0}, {32.68, 75.19, 81.32, 69.06, 53.40, 40.00});
+}
+
 // All of it falls on the walls, whatever its shape and wherever it hangs: flush with the ceiling,
 // its place is on it.
 TEST_F(PhotometricPatches, AClosedRoomGetsAllOfIt) {
