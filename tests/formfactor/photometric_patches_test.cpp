@@ -30,6 +30,7 @@ class PhotometricPatches : public test::SceneFiles {
     options.faces_as_patches = true;
     const PatchMesh mesh = meshScene(scene, options, quiet).mesh;
     std::vector<LightOnPatches::Place> all;
+    all.reserve(places.size());
     for (const Vec3& place : places) all.push_back({place, normal, kNone});
     const std::vector<double> found = LightOnPatches(mesh).aimedAt({&light, 1}, all, 3, quiet);
     std::vector<double> lux;

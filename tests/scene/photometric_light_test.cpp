@@ -57,6 +57,7 @@ TEST_F(PhotometricLights, HangAsTheReadmeSays) {
   const IesLamp lamp = quarters();
   const auto around = [&](const Light& light, const std::vector<Vec3>& places) {
     std::vector<double> found;
+    found.reserve(places.size());
     for (const Vec3& place : places) found.push_back(std::round(candela(light, place)));
     return found;
   };
