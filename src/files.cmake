@@ -110,6 +110,11 @@ foreach(target IN ITEMS radiosity_cli radiosity_scene radiosity_scene_gltf radio
         radiosity_pipeline radiosity_page)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()
+# But for what lights send, which all rays ask: by themselves, and after the option above.
+foreach(light IN ITEMS lights lamps sun photometric_light photometry/photometry)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/scene/lights/${light}.cpp PROPERTIES
+    COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_UNITY_BUILD_INCLUSION ON)
+endforeach()
 
 # Debian's packages are of Debian's own interpreter, whatever comes first on the PATH.
 if(RADIOSITY_PYTHON)

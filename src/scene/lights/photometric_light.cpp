@@ -119,6 +119,7 @@ std::array<Vec3, 3> PhotometricLight::axes() const {
   } else {
     y = -north;
   }
+  if (turn == 0) return {x, y, z};
   const double angle = turn * std::numbers::pi / 180;
   return {std::cos(angle) * x + std::sin(angle) * y, std::cos(angle) * y - std::sin(angle) * x, z};
 }
