@@ -49,7 +49,7 @@ def street(gamma, c):
     """Two beams along the street (C0 and C180), to the side of C90."""
     off_axis = min(abs(c - 15), abs(c - 165))
     beam = math.exp(-((gamma - 62) / 14) ** 2 - (off_axis / 28) ** 2)
-    side = 0.35 + 0.65 * max(0.0, math.sin(math.radians(c)))
+    side = 0.35 + 0.65 * max(0.0, math.sin(math.radians(c))) * math.sin(math.radians(gamma))
     return (1600 * beam + 260 * side) * (1 if gamma < 85 else 0.1)
 
 
