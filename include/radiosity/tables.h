@@ -49,6 +49,13 @@ struct NamedFactors {
 NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
                             const SurfaceGroups& groups, Progress& progress);
 
+/// The same between about `count` nodes, clusters of patches of one surface and side that are near
+/// each other and face alike (mesh/clusters), of at least one a surface; unknowns if there are no
+/// more. Named "SURFACE", or "SURFACE 1", "SURFACE 2", ... in the order of its first patches, with
+/// " back" at the end for the back of a two-sided surface. Throws Cancelled.
+NamedFactors factorsBetweenNodes(const PatchMesh& mesh, const FormFactors& factors,
+                                 std::size_t count, Progress& progress);
+
 /// The rows of the matrix as they are. Errors: as pairsOf().
 NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors);
 

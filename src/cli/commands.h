@@ -8,6 +8,7 @@
 #include "cli/request.h"
 #include "cli/time_limit.h"
 #include "radiosity/pipeline.h"
+#include "radiosity/tables.h"
 
 namespace radiosity::cli {
 
@@ -56,8 +57,8 @@ void keepSolution(Session& session, Pipeline& pipeline, const OutputSet& files);
 /// The same for a run without later stages: the .h5 is written before tables.
 void saveResults(Session& session, Pipeline& pipeline, const OutputSet& files);
 
-/// Announces the size of the .mtx among `files`, then writes it.
-void writeMatrix(Session& session, Pipeline& pipeline, OutputSet& files);
+/// Announces the size of the .mtx among `files`, which are to have one, then writes it.
+void writeMatrix(Session& session, const NamedFactors& factors, OutputSet& files);
 /// Announces the sizes of the .h5 and .mtx among `files`, then writes them. A results file that
 /// would not change is not written.
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files);

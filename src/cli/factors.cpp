@@ -15,7 +15,6 @@ int runFactors(Session& session) {
   saveResults(session, run.pipeline, files);
   writeTables(session, run.pipeline, files);
   writeCells(session, run.pipeline, files);
-  writeMatrix(session, run.pipeline, files);
   files.commit(session.report, session.progress);
   return 0;
 }

@@ -10,6 +10,7 @@
 #include "cli/matrix_commands.h"
 #include "cli/signal_guard.h"
 #include "cli/words.h"
+#include "radiosity/matrix_files.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
@@ -75,8 +76,9 @@ bool needsPairs(const Session& session) {
   const bool lists = request.command == Command::factors &&
                      request.apply(FormFactorOptions()).method == FormFactorMethod::automatic;
   return session.processes != nullptr || request.command == Command::view || lists ||
-         std::ranges::any_of(parseOutputs(request), [](const Output& output) {
-           return output.format == Format::matrix_market;
+         std::ranges::any_of(parseOutputs(request), [&](const Output& output) {
+           const bool sums = !request.between.empty() && request.between != "patches";
+           return output.format == Format::matrix_market && !sums;
          });
 }
 
@@ -211,12 +213,13 @@ void saveResults(Session& session, Pipeline& pipeline, const OutputSet& files) {
 
 void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (files.has(Format::results)) writeResultsFile(session, pipeline, files);
-  writeMatrix(session, pipeline, files);
+  if (!files.has(Format::matrix_market)) return;
+  pipeline.loadMatrix();
+  writeMatrix(session, factorsOfUnknowns(pipeline.mesh().mesh, pipeline.factors()), files);
 }
 
-void writeMatrix(Session& session, Pipeline& pipeline, OutputSet& files) {
-  if (!files.has(Format::matrix_market)) return;
-  const ExchangeMatrix& matrix = pairsOf(pipeline.matrix());
+void writeMatrix(Session& session, const NamedFactors& factors, OutputSet& files) {
+  const ExchangeMatrix& matrix = *factors.matrix;
   // Two indices and 17 digits with sign, point and exponent: at most 40 characters an entry.
   const std::size_t bytes = 40 * matrix.nonZeros();
   const std::string path = files.path(Format::matrix_market);
@@ -224,9 +227,7 @@ void writeMatrix(Session& session, Pipeline& pipeline, OutputSet& files) {
   requireDiskSpace(path, bytes);
   files.write(Format::matrix_market, "form factors, MatrixMarket, numbered from 1",
               [&](const std::string& temporary) {
-                writeMatrixMarket(temporary,
-                                  factorsOfUnknowns(pipeline.mesh().mesh, pipeline.factors()),
-                                  session.progress);
+                writeMatrixMarket(temporary, factors, session.progress);
               });
 }
 

@@ -129,11 +129,12 @@ void addMatrixOptions(CLI::App& app, Request& r) {
 }
 
 void addTableOptions(CLI::App& app, Request& r) {
-  add(app, "Tables", "--between", r.between, "groups|surfaces|patches",
+  add(app, "Tables", "--between", r.between, "groups|surfaces|patches|N",
       "Print the form factors between surfaces, joined by --group (groups; without any the "
-      "surfaces), each on its own (surfaces), or between patches; and write these (default: .txt "
-      "and .hdf5 patches, others groups)")
-      ->check(CLI::IsMember({"groups", "surfaces", "patches"}));
+      "surfaces), each on its own (surfaces), between about N nodes, parts of surfaces that are "
+      "near each other and face alike, or between patches; and write these (default: .txt, .hdf5 "
+      "and .mtx patches, others groups)")
+      ->check(rowsOfTables());
   add(app, "Tables", "--group", r.groups, "NAME=PATTERN",
       "Join surfaces under one name in tables; * and ? stand for any text and any character, a "
       "surface belongs to the first group that matches it. Patches and form factors stay. May be "

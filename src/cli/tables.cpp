@@ -26,7 +26,9 @@ constexpr std::array kTables = {Format::csv,    Format::json,     Format::markdo
                                 Format::view3d, Format::triplets, Format::hdf5};
 
 /// True for formats of programs that read the matrix itself.
-bool isOfPatches(Format format) { return format == Format::triplets || format == Format::hdf5; }
+bool isOfPatches(Format format) {
+  return format == Format::triplets || format == Format::hdf5 || format == Format::matrix_market;
+}
 
 bool printsTable(const Request& request) {
   return !request.between.empty() || !request.groups.empty();
@@ -36,6 +38,11 @@ bool printsTable(const Request& request) {
 std::string betweenOf(const Request& request, Format format) {
   if (!request.between.empty()) return request.between;
   return isOfPatches(format) ? "patches" : "groups";
+}
+
+/// The number of nodes; 0: it is a word.
+std::size_t nodesOf(const std::string& between) {
+  return std::size_t(std::strtoul(between.c_str(), nullptr, 10));
 }
 
 std::vector<std::string> groupsOf(const Request& request, const std::string& between) {
@@ -50,19 +57,11 @@ class Tables {
   }
 
   const NamedFactors& get(const std::string& between) {
-    std::optional<NamedFactors>& made = between == "patches" ? patches_ : surfaces_;
-    if (made) return *made;
-    const PatchMesh& mesh = pipeline_.mesh().mesh;
-    const FormFactors& factors = pipeline_.factors();
-    if (between == "patches") {
-      made = factorsOfUnknowns(mesh, factors);
-    } else {
-      const SurfaceGroups groups =
-          groupSurfaces(mesh.surface_names, groupsOf(session_.request, between));
-      session_.report.notes(groups.notes);
-      made = factorsBetween(mesh, factors, groups, session_.progress);
+    std::optional<NamedFactors>& made = between == "patches" ? patches_ : summed_;
+    if (!made) {
+      made = make(between);
+      made->sky_name = session_.request.sky_name;
     }
-    made->sky_name = session_.request.sky_name;
     return *made;
   }
 
@@ -73,9 +72,23 @@ class Tables {
   }
 
  private:
+  NamedFactors make(const std::string& between) {
+    const PatchMesh& mesh = pipeline_.mesh().mesh;
+    const FormFactors& factors = pipeline_.factors();
+    if (between == "patches") return factorsOfUnknowns(mesh, factors);
+    if (const std::size_t nodes = nodesOf(between); nodes > 0) {
+      return factorsBetweenNodes(mesh, factors, nodes, session_.progress);
+    }
+    const SurfaceGroups groups =
+        groupSurfaces(mesh.surface_names, groupsOf(session_.request, between));
+    session_.report.notes(groups.notes);
+    return factorsBetween(mesh, factors, groups, session_.progress);
+  }
+
   Session& session_;
   Pipeline& pipeline_;
-  std::optional<NamedFactors> surfaces_;
+  std::optional<NamedFactors>
+      summed_;  ///< over groups, surfaces or nodes: one run has one of these
   std::optional<NamedFactors> patches_;
 };
 
@@ -106,7 +119,9 @@ void recordPairs(Report& report, const NamedFactors& factors) {
 
 void print(Session& session, const NamedFactors& factors, const std::string& between) {
   Report& report = session.report;
-  const std::string rows = between == "patches" ? "patches" : "surfaces";
+  const std::string rows = between == "patches"   ? "patches"
+                           : nodesOf(between) > 0 ? "nodes"
+                                                  : "surfaces";
   report.section("table", fmt::format("Form factors between {}, from row to column", rows));
   if (!factors.numbered && !session.request.report.empty()) recordPairs(report, factors);
   double residual = 0;
@@ -145,9 +160,10 @@ void writeTable(Session& session, Tables& tables, Format format, OutputSet& file
   const NamedFactors& factors = tables.of(format);
   const TableLayout layout = layoutOf(session.request);
   Progress& progress = session.progress;
-  const std::string what = fmt::format(
-      "form factors between {}", plural(factors.size(), factors.numbered ? "unknown" : "surface",
-                                        factors.numbered ? "unknowns" : "surfaces"));
+  const bool are_nodes = nodesOf(session.request.between) > 0;
+  const std::string row = factors.numbered ? "unknown" : are_nodes ? "node" : "surface";
+  const std::string what =
+      fmt::format("form factors between {}", plural(factors.size(), row, row + "s"));
   const auto write = [&](const std::string& text, auto&& writer) {
     files.write(format, what + text, writer);
   };
@@ -219,8 +235,11 @@ void checkTables(const Session& session, const OutputSet& files,
     NamedFactors rows;
     rows.numbered = between == "patches";
     rows.sky_name = request.sky_name;
-    rows.names = rows.numbered ? std::vector<std::string>(unknowns)
-                               : groupSurfaces(surfaces, groupsOf(request, between)).names;
+    if (rows.numbered) {
+      rows.names.resize(unknowns);
+    } else if (nodesOf(between) == 0) {
+      rows.names = groupSurfaces(surfaces, groupsOf(request, between)).names;
+    }
     return rows;
   };
   groupSurfaces(surfaces, request.groups);
@@ -245,13 +264,15 @@ void writeTables(Session& session, Pipeline& pipeline, OutputSet& files) {
   const Request& request = session.request;
   const bool writes =
       std::any_of(kTables.begin(), kTables.end(), [&](Format format) { return files.has(format); });
-  if (!writes && !printsTable(request)) return;
+  const bool lists = files.has(Format::matrix_market);
+  if (!writes && !lists && !printsTable(request)) return;
   Tables tables(session, pipeline);
   if (printsTable(request)) {
     const std::string between = request.between.empty() ? "groups" : request.between;
     print(session, tables.get(between), between);
   }
   for (const Format format : kTables) writeTable(session, tables, format, files);
+  if (lists) writeMatrix(session, tables.of(Format::matrix_market), files);
   if (files.has(Format::idf)) noteOpenZone(session, tables.of(Format::idf));
 }
 

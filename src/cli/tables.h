@@ -17,7 +17,7 @@ void checkTableOptions(const Request& request, const OutputSet& files);
 void checkTables(const Session& session, const OutputSet& files,
                  std::span<const std::string> surfaces, std::size_t unknowns);
 
-/// Prints the table of --between or --group and writes those among `files`.
+/// Prints the table of --between or --group and writes those among `files`, MatrixMarket too.
 void writeTables(Session& session, Pipeline& pipeline, OutputSet& files);
 
 }  // namespace radiosity::cli

@@ -13,5 +13,7 @@ namespace radiosity::cli {
 const CLI::Validator& wholeNumber();
 /// Accepts a number of 0 or more. CLI11's own validator prints all digits of the largest double.
 const CLI::Validator& nonNegative();
+/// Accepts a value of --between: a word, or a number of nodes.
+const CLI::Validator& rowsOfTables();
 
 }  // namespace radiosity::cli

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
+#include "mesh/clusters/cluster_patches.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/tables.h"
 
@@ -33,6 +35,42 @@ std::vector<double> meansOfRows(std::span<const double> values, std::span<const 
   return means;
 }
 
+/// Sums of rows and columns over those that `row_of` gives each unknown.
+NamedFactors summedTo(std::vector<std::string> names, std::vector<Index> row_of,
+                      const FormFactors& factors, Progress& progress) {
+  NamedFactors result;
+  result.names = std::move(names);
+  result.row_of = std::move(row_of);
+  result.members.assign(result.size(), 0);
+  for (const Index row : result.row_of) ++result.members[row];
+  result.matrix = aggregated(*factors.matrix, result.row_of, result.size(), progress,
+                             Precision::double_precision);
+  const std::span<const double> area = factors.matrix->area();
+  result.sky = meansOfRows(factors.sky, area, result);
+  result.backs = meansOfRows(factors.backs, area, result);
+  result.error = meansOfRows(factors.error, area, result);
+  result.closed = factors.report.closed;
+  return result;
+}
+
+std::vector<std::string> nodeNames(const PatchMesh& mesh, const PatchClusters& nodes) {
+  const auto sideOf = [&](std::size_t node) {
+    const Index first = nodes.patchesOf(node)[0];
+    return 2 * std::size_t(mesh.surface[first]) + mesh.side[first];
+  };
+  std::vector<std::size_t> of_side(2 * mesh.surface_names.size(), 0);
+  for (std::size_t node = 0; node < nodes.size(); ++node) ++of_side[sideOf(node)];
+  std::vector<std::size_t> named(of_side.size(), 0);
+  std::vector<std::string> names;
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    const std::size_t side = sideOf(node);
+    std::string name = mesh.surface_names[side / 2];
+    if (of_side[side] > 1) name += fmt::format(" {}", ++named[side]);
+    names.push_back(side % 2 == 0 ? name : name + " back");
+  }
+  return names;
+}
+
 }  // namespace
 
 double NamedFactors::entryError(std::size_t a, std::size_t b) const {
@@ -56,20 +94,17 @@ NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
     throw InputError(fmt::format("groups of {} surfaces are given for a mesh of {}",
                                  groups.of_surface.size(), mesh.surface_names.size()));
   }
-  NamedFactors result;
-  result.names = groups.names;
-  result.row_of = surfaceOfUnknowns(mesh);
-  for (Index& row : result.row_of) row = groups.of_surface[row];
-  result.members.assign(result.size(), 0);
-  for (const Index row : result.row_of) ++result.members[row];
-  result.matrix = aggregated(*factors.matrix, result.row_of, result.size(), progress,
-                             Precision::double_precision);
-  const std::span<const double> area = factors.matrix->area();
-  result.sky = meansOfRows(factors.sky, area, result);
-  result.backs = meansOfRows(factors.backs, area, result);
-  result.error = meansOfRows(factors.error, area, result);
-  result.closed = factors.report.closed;
-  return result;
+  std::vector<Index> row_of = surfaceOfUnknowns(mesh);
+  for (Index& row : row_of) row = groups.of_surface[row];
+  return summedTo(groups.names, std::move(row_of), factors, progress);
+}
+
+NamedFactors factorsBetweenNodes(const PatchMesh& mesh, const FormFactors& factors,
+                                 std::size_t count, Progress& progress) {
+  const PatchClusters nodes = clusterPatches(mesh, count, progress);
+  std::vector<Index> row_of(mesh.unknowns(), 0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) row_of[mesh.unknownOf(i)] = nodes.of_patch[i];
+  return summedTo(nodeNames(mesh, nodes), std::move(row_of), factors, progress);
 }
 
 NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors) {

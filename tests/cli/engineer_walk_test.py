@@ -39,6 +39,41 @@ class EngineerWalk(CliTest):
         for name, row in self.table("rays.csv").items():
             self.assertAlmostEqual(float(row["sky"]), float(city[name]["sky"]), delta=1e-2)
 
+    def test_nodes_sum_up_to_surfaces(self):
+        # With and without shared unknowns, which stay whole.
+        for scene, patches in (("cornell-box-closed", "400"), ("furnished-room", "500")):
+            self.run_program("factors", DATA / f"{scene}.obj", "--patches", patches, "--tolerance", "0.05",
+                             "-o", "f.h5")
+            self.run_program("factors", "f.h5", "--between", "60", "-o", "nodes.csv", "-o", "nodes.mtx")
+            self.run_program("factors", "f.h5", "--between", "surfaces", "-o", "surfaces.csv")
+            nodes, surfaces = self.table("nodes.csv"), self.table("surfaces.csv")
+            self.assertLess(len(nodes), 1.2 * max(60, len(surfaces)))
+            self.assertGreaterEqual(len(nodes), len(surfaces))
+            surface_of = {name: name if name in surfaces else name.rsplit(" ", 1)[0] for name in nodes}
+            self.assertEqual(set(surface_of.values()), set(surfaces))
+            for name, row in nodes.items():
+                # Sums in double precision of values in single precision.
+                self.assertAlmostEqual(sum(float(row[other]) for other in [*nodes, "sky", "backs"]),
+                                       float(row["sum"]), delta=1e-6)
+                for other in nodes:
+                    self.assertAlmostEqual(float(row["area_m2"]) * float(row[other]),
+                                           float(nodes[other]["area_m2"]) * float(nodes[other][name]),
+                                           delta=1e-9)
+            exchange = dict.fromkeys(((a, b) for a in surfaces for b in surfaces), 0.0)
+            for name, row in nodes.items():
+                for other in nodes:
+                    exchange[surface_of[name], surface_of[other]] += float(row["area_m2"]) * float(row[other])
+            for (a, b), value in exchange.items():
+                self.assertAlmostEqual(value, float(surfaces[a]["area_m2"]) * float(surfaces[a][b]), delta=1e-6)
+            size = [line for line in (self.folder / "nodes.mtx").read_text().splitlines()
+                    if not line.startswith("%")][0].split()
+            self.assertEqual(size[:2], [str(len(nodes))] * 2)
+
+    def test_a_number_of_nodes_that_is_none_is_refused(self):
+        for value in ("0", "-3", "2.5", "1e9", "20000", "walls"):
+            run = self.run_program("factors", DATA / "city.stl", f"--between={value}", code=2)
+            self.assertIn("is not groups, surfaces, patches, or a number of nodes from 1 to 10000", run.err)
+
     def test_a_heater_by_name_gives_temperatures_that_vtk_reads(self):
         self.run_program("heat", DATA / "cornell-box-closed.obj", "--thermal", DATA / "oven.csv",
                          "-o", "oven.vtp", "-o", "oven.csv")

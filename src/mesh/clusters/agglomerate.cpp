@@ -32,6 +32,16 @@ float Agglomeration::cost(Index a, Index b) const {
   return float(scale_ * (i.area * j.area / (i.area + j.area)) * distance2);
 }
 
+void Agglomeration::join(Index a, Index b) {
+  a = parts_.find(a);
+  b = parts_.find(b);
+  if (a == b) return;
+  if (b < a) std::swap(a, b);
+  sums_[a] += sums_[b];
+  parts_.unite(a, b);
+  --size_;
+}
+
 void Agglomeration::offer(Index a, Index b) {
   a = parts_.find(a);
   b = parts_.find(b);
@@ -91,9 +101,7 @@ void Agglomeration::run(std::size_t wanted, Progress& progress) {
       std::push_heap(dearer.begin(), dearer.end(), std::greater<>());
       continue;
     }
-    sums_[a] += sums_[b];
-    parts_.unite(a, b);
-    --size_;
+    join(a, b);
   }
   offers_.erase(offers_.begin(), offers_.begin() + std::ptrdiff_t(next));
   offers_.insert(offers_.end(), dearer.begin(), dearer.end());

@@ -31,7 +31,7 @@ constexpr std::size_t kAtAnEdge = 4;
 
 std::vector<Index> frontsInOrder(const PatchMesh& mesh) {
   std::vector<Index> fronts = canonicalOrder(mesh);
-  std::erase_if(fronts, [&](Index i) { return mesh.side[i] != 0; });
+  std::erase_if(fronts, [&](Index i) { return mesh.side[i] != 0 || !(mesh.area[i] > 0); });
   return fronts;
 }
 
@@ -94,6 +94,7 @@ class FrontClusters {
     std::vector<Agglomerate> pieces = agglomeratesOf(mesh, fronts);
     for (const Agglomerate& piece : pieces) area_ += piece.area;
     parts_ = Agglomeration(std::move(pieces), kBend * sideOf(wanted), sideOf(wanted));
+    joinShared();
   }
 
   /// Finds neighbours anew whenever half of the clusters are gone. Every cluster that is not alone
@@ -113,6 +114,17 @@ class FrontClusters {
   Index of(Index k) { return parts_.of(k); }
 
  private:
+  /// Patches that share an unknown stay together.
+  void joinShared() {
+    if (!mesh_.clusters) return;
+    std::vector<Index> first(mesh_.unknowns(), kNone);
+    for (Index k = 0; k < fronts_.size(); ++k) {
+      Index& of_unknown = first[mesh_.unknownOf(fronts_[k])];
+      if (of_unknown == kNone) of_unknown = k;
+      parts_.join(of_unknown, k);
+    }
+  }
+
   /// The side of a square with a `count`-th of all area.
   double sideOf(std::size_t count) const { return std::sqrt(area_ / double(count)); }
 
@@ -218,14 +230,16 @@ PatchClusters clusterPatches(const PatchMesh& mesh, std::size_t wanted, Progress
   FrontClusters parts(mesh, fronts, wanted);
   parts.run(progress);
   progress.end();
-  // The key of a front is the place of the first in its cluster; those of backs follow.
+  // The key of a front is the place of the first in its cluster; those of backs follow, then those
+  // of degenerate patches, which are on their own.
   std::vector<Index> key(mesh.size());
+  std::iota(key.begin(), key.end(), Index(2 * fronts.size()));
   for (Index k = 0; k < fronts.size(); ++k) {
     const Index front = fronts[k];
     key[front] = parts.of(k);
     if (mesh.twin[front] != kNone) key[mesh.twin[front]] = Index(fronts.size()) + key[front];
   }
-  const std::size_t count = renumber(key, 2 * fronts.size());
+  const std::size_t count = renumber(key, 2 * fronts.size() + mesh.size());
   return clustersOf(std::move(key), count);
 }
 

@@ -13,7 +13,8 @@ constexpr double kMostPatchesKept = 1.2;
 /// both sides counted once, or as many as there are surfaces, if that is more. Agglomeration joins
 /// patches of one surface that share an edge or are next to each other in space, the cheapest pair
 /// first: large patches keep an unknown of their own, a small body becomes one. The back of a
-/// cluster consists of the backs of its patches. Precondition: no patch is degenerate. The result
+/// cluster consists of the backs of its patches. Of a mesh that has clusters, these are joined. A
+/// degenerate patch stays alone. The result
 /// depends on the numbers of patches only through their order within a surface. O(n log n). Throws
 /// Cancelled.
 ///
