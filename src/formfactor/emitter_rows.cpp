@@ -106,9 +106,11 @@ bool EmitterRows::planShadows(const Room& room, Progress& progress) {
   const double most = std::max(kFewShadows, kShadowsARay * room.most.work / kExactWorkARay);
   const std::size_t pairs = room.wanted.size() * room.mesh.unknowns();
   if (pairs > kMostShadowPairs || rows.rays() > most) return false;
+  const std::size_t bytes = std::max(room.plan.bytes, room.most.bytes + rows.bytes()) +
+                            KnownEntries::bytes(double(pairs));
+  if (room.options.memory_limit > 0 && bytes > room.options.memory_limit) return false;
   room.plan.seconds += rows.seconds(progress);
-  room.plan.bytes = std::max(room.plan.bytes, room.most.bytes + rows.bytes()) +
-                    KnownEntries::bytes(double(pairs));
+  room.plan.bytes = bytes;
   return true;
 }
 

@@ -52,6 +52,17 @@ void noteRowsThatAreNotExact(const FormFactorPlan& plan, FormFactorReport& repor
                    wanted == 1 ? "unknown that emits are" : "unknowns that emit are", way)});
 }
 
+/// The same method where its own rows have to bring what emits, too.
+Chosen plannedForLamps(Chosen before, const PatchMesh& mesh, FormFactorOptions options,
+                       Progress& progress) {
+  options.exact_rows.clear();
+  Chosen chosen{prepareMethod(before.plan.method, mesh, options), {}};
+  chosen.plan = chosen.method->plan(progress);
+  chosen.plan.reason = std::move(before.plan.reason);
+  chosen.plan.other = before.plan.other;
+  return chosen;
+}
+
 }  // namespace
 
 void FormFactorOptions::validate() const {
@@ -100,6 +111,9 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
   auto& [method, plan] = chosen;
   if (!used.knowsEmitters(plan.method)) used.exact_rows.clear();
   auto emitters = EmitterRows::planned(*mesh, used, *method, plan, progress);
+  if (!emitters && !used.exact_rows.empty() && plan.method == FormFactorMethod::cut) {
+    chosen = plannedForLamps(std::move(chosen), *mesh, used, progress);
+  }
   plan.prepared = std::make_shared<FormFactorPlan::Prepared>(FormFactorPlan::Prepared{
       std::move(mesh), std::move(used), std::move(method), std::move(emitters), watch.seconds()});
   return std::move(plan);

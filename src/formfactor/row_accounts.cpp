@@ -109,6 +109,15 @@ UnknownOrder unknownOrder(const PatchMesh& mesh) {
   return order;
 }
 
+void addBack(const SeenBack& back, std::vector<SeenBack>& backs) {
+  const auto same = std::ranges::find(backs, back.surface, &SeenBack::surface);
+  if (same == backs.end()) {
+    backs.push_back(back);
+  } else {
+    same->share += back.share;
+  }
+}
+
 void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
                      std::span<const double> area,
                      const std::vector<std::vector<SeenBack>>& seen_backs, FormFactors& result) {

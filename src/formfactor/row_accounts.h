@@ -17,6 +17,9 @@ struct SeenBack {
   double share;
 };
 
+/// Adds to the share of a surface.
+void addBack(const SeenBack& back, std::vector<SeenBack>& backs);
+
 /// Fills backs_by_surface from the backs that each row saw, and warns, by name, of surfaces whose
 /// backs take more than 0.1% of the view. Needs the accounts. `area` and `seen_backs`: a value a
 /// row; `order`: each row once.

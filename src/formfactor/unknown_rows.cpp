@@ -31,13 +31,7 @@ void UnknownRows::addBacks(Index patch, std::span<const SeenBack> seen) {
   if (which_[unknown] == kNone) return;
   std::vector<SeenBack>& backs = rows_[which_[unknown]].backs;
   for (const auto& [surface, of_patch] : seen) {
-    const double share = of_patch * mesh_.area[patch] / area_[unknown];
-    const auto same = std::ranges::find(backs, surface, &SeenBack::surface);
-    if (same == backs.end()) {
-      backs.push_back({surface, share});
-    } else {
-      same->share += share;
-    }
+    addBack({surface, of_patch * mesh_.area[patch] / area_[unknown]}, backs);
   }
 }
 

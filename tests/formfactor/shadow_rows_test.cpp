@@ -89,6 +89,56 @@ TEST(ShadowRows, HaveTheSameBitsForAnyThreads) {
   }
 }
 
+/// What a lamp at height 1, 2 to 3 along both axes, gives to a point of the floor past the edge x =
+/// 2.5 of a plate at half its height: light comes from beyond the edge's image at 5 - x.
+double pastTheEdge(const Vec3& at) {
+  const double from = std::clamp(5 - at.x, 2.0, 3.0);
+  if (from >= 3) return 0;
+  const std::vector<Vec3> outline{{from, 2, 1}, {from, 3, 1}, {3, 3, 1}, {3, 2, 1}};
+  return pointToPolygon(at, {0, 0, 1}, outline);
+}
+
+// Of 400 patches of a lamp each has two rays of a patch at first. Those that few rays happen to
+// miss must not stay unseen: half shadows would be too dark.
+TEST(ShadowRows, OfAHalfShadowAreNotBiased) {
+  test::MeshBuilder builder;
+  builder.grid("floor", {2, 2, 0}, {1, 0, 0}, {0, 1, 0}, 10, 10);
+  builder.grid("plate", {-9, -9, .5}, {11.5, 0, 0}, {0, 23, 0}, 1, 1, true);
+  for (const int parts : {1, 5, 20}) {
+    test::MeshBuilder with = builder;
+    with.grid("lamp", {2, 2, 1}, {0, 1, 0}, {1, 0, 0}, parts, parts);
+    const PatchMesh mesh = with.build();
+    std::vector<Index> emitters;
+    for (Index i = 0; i < mesh.size(); ++i) {
+      if (mesh.surface_names[mesh.surface[i]] == "lamp") emitters.push_back(i);
+    }
+    std::vector<double> seen(mesh.size(), 0.0);
+    for (const KnownRow& row : shadowRows(mesh, emitters)) {
+      for (const KnownExchange& entry : row.entries) {
+        seen[entry.unknown] += entry.exchange / mesh.area[entry.unknown];
+      }
+    }
+    double sum = 0;
+    double whole = 0;
+    for (Index i = 0; i < mesh.size(); ++i) {
+      if (mesh.surface_names[mesh.surface[i]] != "floor") continue;
+      double mean = 0;
+      for (int k = 0; k < 100; ++k) {
+        mean +=
+            pastTheEdge(mesh.centroid[i] + Vec3(.01 * (k % 10) - .045, .01 * (k / 10) - .045, 0)) /
+            100;
+      }
+      // 2% of what it sees, or .2% of what it would see, three times; a lamp of 1 m^2 at 1 m fills
+      // a quarter of the view at most.
+      EXPECT_NEAR(seen[i], mean, 3 * std::max(.02 * mean, .002 * .25)) << parts << " " << i;
+      sum += seen[i];
+      whole += mean;
+    }
+    // Errors of a hundred patches cancel, but for a bias.
+    EXPECT_NEAR(sum / whole, 1, 0.005) << parts;
+  }
+}
+
 // 400 patches of a lamp and 2,500 below are more pairs than exact rows may have.
 TEST(ShadowRows, AreTakenWhereExactOnesAreTooMuch) {
   test::MeshBuilder builder;

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
-#include "base/hash.h"
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/cut/row_cutter.h"

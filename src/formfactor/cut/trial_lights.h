@@ -21,8 +21,9 @@ struct TrialLights {
   std::vector<double> direct;
 };
 
-/// The scene's own light, if some unknowns emit: what these give to all others directly, alike by
-/// area, and half of it reflected; one trial then. Else suns where a ray from some patch finds the
+/// If some unknowns are known to emit: what these give to all others directly, taken to be alike
+/// by area, and half of it reflected; one trial then. The rows bring what is reflected: emitters'
+/// own are known. Else suns where a ray from some patch finds the
 /// sky, and lamps in mid-air where it finds a wall: those of many that reach most of the area, with
 /// their shadows. Throws Cancelled.
 TrialLights trialLights(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,

@@ -59,17 +59,6 @@ double unevenness(std::span<const double> values) {
   return sum > 0 ? std::sqrt(std::max(0.0, count * squares / (sum * sum) - 1)) : 0.0;
 }
 
-double twiceArea(const PatchMesh& mesh, const std::array<Index, 3>& piece) {
-  const Vec3& corner = mesh.vertices[piece[0]];
-  return glm::length(
-      glm::cross(mesh.vertices[piece[1]] - corner, mesh.vertices[piece[2]] - corner));
-}
-
-std::span<const std::array<Index, 3>> piecesOf(const PatchMesh& mesh, std::size_t patch) {
-  return std::span(mesh.pieces)
-      .subspan(mesh.piece_offset[patch], mesh.piece_offset[patch + 1] - mesh.piece_offset[patch]);
-}
-
 double over(const std::vector<double>& strength) {
   double sum = 0;
   for (const double value : strength) sum += value;
@@ -179,15 +168,16 @@ double AimedLight::addWide(const Light& light, const RaySource& at,
 std::optional<double> AimedLight::unobstructed(const Light& light, std::size_t patch) const {
   double sum = 0;
   double area = 0;
-  for (const auto& piece : piecesOf(mesh_, patch)) {
-    const double twice = twiceArea(mesh_, piece);
-    if (!(twice > 0)) continue;
-    const auto& [a, b, c] = piece;
+  const PatchArea pieces(mesh_, patch);
+  for (std::size_t k = 0; k < pieces.pieces().size(); ++k) {
+    const double of_piece = pieces.sizeOf(k);
+    if (!(of_piece > 0)) continue;
+    const auto& [a, b, c] = pieces.pieces()[k];
     const std::optional<double> share =
         light.share(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
     if (!share) return std::nullopt;
-    sum += twice * *share;
-    area += twice;
+    sum += of_piece * *share;
+    area += of_piece;
   }
   return area > 0 ? sum / area : 0.0;
 }

@@ -22,6 +22,10 @@ class PatchArea {
   /// Numbers spread evenly over [0, 1)^2 give places alike by area. Precondition: size() > 0.
   Vec3 at(double x, double y) const;
   std::span<const std::array<Index, 3>> pieces() const { return pieces_; }
+  /// m^2
+  double sizeOf(std::size_t piece) const {
+    return (end_[piece] - (piece == 0 ? 0.0 : end_[piece - 1])) / 2;
+  }
 
  private:
   const PatchMesh& mesh_;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "base/geometry/clip.h"
@@ -22,11 +21,13 @@ namespace {
 /// have kAllPoints or less, then as many as the tolerance takes.
 constexpr std::array<std::size_t, 4> kShadowPoints{1, 8, 64, 512};
 constexpr std::size_t kAllPoints = 512;
-/// Of what a patch sees of all emitters.
+/// Of what a patch sees of all emitters, but no less than this share of what it would see without
+/// anything in between.
 constexpr double kShadowTolerance = 0.02;
-/// Beyond so many areas of it, squared distance, an emitter is a point: what a point of it brings
-/// is what all of it brings, but for some percent, which average out.
-constexpr double kNear = 16;
+constexpr double kLeastSeen = 0.1;
+/// Beyond so many of its radii an emitter is a point: what a point of it brings is what all of it
+/// brings, but for some percent, which average out.
+constexpr double kNear = 5;
 /// seconds() looks from so many patches.
 constexpr std::size_t kShadowSample = 128;
 /// For the backs that an emitter sees: points, and rays of each.
@@ -58,7 +59,11 @@ ShadowRows::ShadowRows(const PatchMesh& mesh, std::vector<Index> wanted, std::ui
     if (mesh.polygon[i] == kNone || !(mesh.area[i] > 0)) continue;
     if (!std::ranges::binary_search(wanted_, mesh.unknownOf(i))) continue;
     emitter_of_[i] = Index(emitters_.size());
-    emitters_.push_back({i, PatchArea(mesh, i)});
+    double radius = 0;
+    for (const Index corner : mesh.outline(i)) {
+      radius = std::max(radius, glm::distance(mesh.vertices[corner], mesh.centroid[i]));
+    }
+    emitters_.push_back({i, PatchArea(mesh, i), radius});
   }
 }
 
@@ -69,8 +74,8 @@ std::size_t ShadowRows::firstLevel() const {
 }
 
 double ShadowRows::rays() const {
-  return 2.0 * double(kShadowPoints[firstLevel()]) * double(mesh_.size()) *
-         double(emitters_.size());
+  const double of_pairs = 2.0 * double(kShadowPoints[firstLevel()]) * double(mesh_.size());
+  return (of_pairs + double(kBackPoints * kBackRays)) * double(emitters_.size());
 }
 
 std::size_t ShadowRows::bytes() const {
@@ -88,7 +93,11 @@ double ShadowRows::seconds(Progress& progress) const {
     receive(Index((2 * k + 1) * mesh_.size() / (2 * count)), shares);
   });
   progress.check();
-  return watch.seconds() * double(mesh_.size()) / double(count);
+  const double of_pairs = watch.seconds() * double(mesh_.size()) / double(count);
+  if (emitters_.empty()) return of_pairs;
+  const Stopwatch of_backs;
+  backsOf(emitters_.front());
+  return of_pairs + of_backs.seconds() * double(emitters_.size()) / double(allowedThreads());
 }
 
 std::vector<KnownRow> ShadowRows::compute(Progress& progress) const {
@@ -130,36 +139,70 @@ void ShadowRows::addBlock(std::size_t begin, std::size_t count, UnknownRows& row
 }
 
 /// Fills in the share of each emitter, of a pair of two emitters at the first of them. Emitters
-/// take other points of a patch, so that their errors add up as squares.
+/// take other points of a patch, so that their errors add up as squares. Whether there are enough
+/// rays is judged by all emitters at once: by each of them, those that few rays happened to miss,
+/// or to see whole, would stay as they are, and half shadows come out too dark.
 void ShadowRows::receive(Index patch, std::span<Share> shares) const {
   if (mesh_.polygon[patch] == kNone || !(mesh_.area[patch] > 0)) return;
   const std::uint64_t seed = patchSeed(mesh_, patch, seed_);
+  std::vector<std::size_t> facing;
   const std::size_t begin = emitter_of_[patch] == kNone ? 0 : emitter_of_[patch] + 1;
-  double least = 0;
+  for (std::size_t e = begin; e < emitters_.size(); ++e) {
+    if (faces(patch, emitters_[e])) facing.push_back(e);
+  }
+  if (facing.empty()) return;
   for (std::size_t level = firstLevel(); level < kShadowPoints.size(); ++level) {
-    const bool is_first = level == firstLevel();
     const std::size_t count = kShadowPoints[level];
     const std::size_t all_points = std::max(count, kShadowPoints[2]);
-    std::optional<PatchPoints> first;
-    std::optional<PatchPoints> second;
-    for (std::size_t e = begin; e < emitters_.size(); ++e) {
-      if (is_first ? !faces(patch, emitters_[e]) : !(shares[e].error > least)) continue;
-      if (!first) {
-        first.emplace(mesh_, patch, sobol_, all_points, seed);
-        second.emplace(mesh_, patch, sobol_, all_points, seed + 1);
-      }
+    const PatchPoints first(mesh_, patch, sobol_, all_points, seed);
+    const PatchPoints second(mesh_, patch, sobol_, all_points, seed + 1);
+    std::vector<std::array<Found, 2>> found;
+    for (const std::size_t e : facing) {
       const std::size_t from = e * count % all_points;
-      shares[e] = shareOf(look(emitters_[e], *first, from, count),
-                          look(emitters_[e], *second, from, count), count);
+      found.push_back(
+          {look(emitters_[e], first, from, count), look(emitters_[e], second, from, count)});
     }
-    double all = 0;
-    double seen = 0;
-    for (const Share& share : shares) {
-      all += share.value;
-      seen += share.value > 0 ? 1.0 : 0.0;
-    }
-    least = kShadowTolerance * all / std::sqrt(std::max(1.0, seen));
+    if (settle(found, facing, count, shares)) return;
   }
+}
+
+/// The shares by what was found of the emitters that a patch faces, with their errors. Returns
+/// whether these are small enough.
+bool ShadowRows::settle(std::span<const std::array<Found, 2>> found,
+                        std::span<const std::size_t> facing, std::size_t count,
+                        std::span<Share> shares) const {
+  std::array<double, 2> lit{};
+  double formula = 0;
+  double squares = 0;
+  double all = 0;
+  bool is_whole = true;
+  bool is_dark = true;
+  for (std::size_t k = 0; k < facing.size(); ++k) {
+    const auto& [a, b] = found[k];
+    const double mean = (a.formula + b.formula) / 2;
+    const double whole = a.whole + b.whole;
+    Share& share = shares[facing[k]];
+    share.value = whole > 0 ? mean * (a.lit + b.lit) / whole : 0.0;
+    for (std::size_t half = 0; half < lit.size(); ++half) {
+      const Found& of = found[k][half];
+      lit[half] += of.whole > 0 ? of.formula * of.lit / of.whole : 0.0;
+      is_whole = is_whole && of.lit == of.whole;
+      is_dark = is_dark && of.lit == 0;
+    }
+    formula += mean;
+    squares += mean * mean;
+    all += share.value;
+  }
+  // Two halves may agree by chance: an edge is taken to be off by what edges are, and what all rays
+  // see alike by what falls between them.
+  const auto rays = double(2 * count * facing.size());
+  const double chance = is_whole || is_dark ? 1 / rays : edgeError(std::size_t(rays));
+  const double error = std::max(std::abs(lit[0] - lit[1]) / 2, chance * formula);
+  for (std::size_t k = 0; squares > 0 && k < facing.size(); ++k) {
+    const double mean = (found[k][0].formula + found[k][1].formula) / 2;
+    shares[facing[k]].error = error * mean / std::sqrt(squares);
+  }
+  return error <= kShadowTolerance * std::max(all, kLeastSeen * formula);
 }
 
 /// Whether something of each lies in front of the other.
@@ -170,17 +213,6 @@ bool ShadowRows::faces(Index patch, const Emitter& emitter) const {
     });
   };
   return isInFront(patch, emitter.patch) && isInFront(emitter.patch, patch);
-}
-
-/// Two halves may agree by chance: an edge is taken to be off by what edges are.
-ShadowRows::Share ShadowRows::shareOf(const Found& a, const Found& b, std::size_t points) const {
-  if (!(a.lit + b.lit > 0)) return {};
-  const double formula = (a.formula + b.formula) / 2;
-  const auto seenOf = [](const Found& half) { return half.whole > 0 ? half.lit / half.whole : 0; };
-  const double value = formula * (a.lit + b.lit) / (a.whole + b.whole);
-  const double off = std::abs(a.formula * seenOf(a) - b.formula * seenOf(b)) / 2;
-  if (a.lit == a.whole && b.lit == b.whole) return {value, off};
-  return {value, std::max(off, formula * edgeError(2 * points))};
 }
 
 ShadowRows::Found ShadowRows::look(const Emitter& emitter, const PatchPoints& points,
@@ -198,13 +230,14 @@ ShadowRows::Found ShadowRows::look(const Emitter& emitter, const PatchPoints& po
   const double each = 1 / double(count);
   for (std::size_t k = first; k < first + count; ++k) {
     const Vec3& at = points.at[k];
+    const Vec3 middle = mesh_.centroid[emitter.patch] - at;
+    const bool is_near = glm::dot(middle, middle) < kNear * kNear * emitter.radius * emitter.radius;
     const auto& [u, v] = points.of_light[k];
     const Vec3 end = emitter.area.at(double(u), double(v));
     const Vec3 way = end - at;
     const double cosine = glm::dot(way, points.normal);
     const double other = -glm::dot(way, facing);
     const double square = glm::dot(way, way);
-    const bool is_near = square < kNear * emitter.area.size();
     if (is_near) found.formula += each * formula(emitter, at, points.normal);
     if (!(cosine > 0) || !(other > 0)) continue;
     from.push_back(at);
@@ -248,14 +281,7 @@ std::vector<SeenBack> ShadowRows::backsOf(const Emitter& emitter) const {
     rays_.look({at, points.normal, points.own}, set, turn.set, turn.angle, ends);
     for (const RayEnd& end : ends) {
       if (end.patch != RayEnd::kBlack) continue;
-      const Index surface = mesh_.polygons.surface[end.polygon];
-      const auto same = std::ranges::find(backs, surface, &SeenBack::surface);
-      const double share = 1.0 / double(kBackPoints * kBackRays);
-      if (same == backs.end()) {
-        backs.push_back({surface, share});
-      } else {
-        same->share += share;
-      }
+      addBack({mesh_.polygons.surface[end.polygon], 1.0 / double(kBackPoints * kBackRays)}, backs);
     }
   }
   return backs;

@@ -1,6 +1,7 @@
 // The rows of a few unknowns, by shadow rays from all others.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,8 +17,9 @@ class UnknownRows;
 /// What each patch sees of some that emit, where exact rows past what stands in between take too
 /// long. At points of the patch Lambert's formula tells what there is; rays from there to points
 /// that are spread over the emitter tell which share of it is hidden (direct lighting by
-/// stratified shadow rays: Shirley, Wang & Zimmerman, ACM TOG 15(1), 1996). The more rays the less
-/// two halves of them agree, until what they are off is little of all emitters' view.
+/// stratified shadow rays: Shirley, Wang & Zimmerman, ACM TOG 15(1), 1996). There are the more rays
+/// the less two halves of them agree, until they are off by 2% of what the patch sees of all
+/// emitters, or .2% of what it would see of them with nothing in between.
 class ShadowRows {
  public:
   /// `wanted`: unknowns, each once. `mesh` is kept by reference.
@@ -36,6 +38,7 @@ class ShadowRows {
   struct Emitter {
     Index patch;
     PatchArea area;
+    double radius;  ///< metres, from the centroid
   };
   struct Share {
     double value = 0;  ///< F from a patch to an emitter
@@ -47,7 +50,8 @@ class ShadowRows {
   void receive(Index patch, std::span<Share> shares) const;
   bool faces(Index patch, const Emitter& emitter) const;
   std::size_t firstLevel() const;
-  Share shareOf(const Found& a, const Found& b, std::size_t points) const;
+  bool settle(std::span<const std::array<Found, 2>> found, std::span<const std::size_t> facing,
+              std::size_t count, std::span<Share> shares) const;
   Found look(const Emitter& emitter, const PatchPoints& points, std::size_t first,
              std::size_t count) const;
   double formula(const Emitter& emitter, const Vec3& at, const Vec3& normal) const;
