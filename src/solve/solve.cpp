@@ -90,6 +90,16 @@ void raiseFromBelowZero(std::span<const double> source, Solution& solution) {
                                           countText(raised), raised == 1 ? "patch" : "patches");
 }
 
+/// L2 by area, over all bands.
+double normOf(std::span<const double> irradiance, std::span<const double> area) {
+  const std::size_t bands = area.empty() ? 1 : irradiance.size() / area.size();
+  double squares = 0;
+  for (std::size_t k = 0; k < irradiance.size(); ++k) {
+    squares += area[k / bands] * irradiance[k] * irradiance[k];
+  }
+  return std::sqrt(squares);
+}
+
 /// Fills in the summary of a scene in which B = 0 for every patch.
 void nameDarkness(std::span<const double> by_lights, SolveSummary& summary) {
   const bool sky = std::any_of(by_lights.begin(), by_lights.end(), [](double h) { return h > 0; });
@@ -162,12 +172,16 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
     summary.message += fmt::format("; {}", factors.condition());
   }
   if (!factors.matrix->isNonNegative()) raiseFromBelowZero(source, solution);
-  summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
-  if (summary.usable() && summary.irradiance_error) {
-    summary.message +=
-        fmt::format("; irradiance off by about {:.2g}%", 100 * *summary.irradiance_error);
-  }
+  const double reflected = normOf(solution.irradiance, factors.matrix->area());
   for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
+  summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
+  if (summary.irradiance_error) {
+    *summary.irradiance_error *= reflected / normOf(solution.irradiance, factors.matrix->area());
+    if (summary.usable()) {
+      summary.message +=
+          fmt::format("; irradiance off by about {:.2g}%", 100 * *summary.irradiance_error);
+    }
+  }
   summary.energy = energyAccount(factors, reflectance, {emission, by_lights}, solution.radiosity,
                                  solution.irradiance, bands);
   return solution;
