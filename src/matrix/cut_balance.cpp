@@ -13,9 +13,12 @@ namespace {
 /// Of the sum of differences over all power. Few scenes need more than half the steps.
 constexpr double kBalanced = 1e-5;
 constexpr int kBalanceSteps = 20;
+/// A step must leave less than this share of what was off. Few patches that see each other alone
+/// cannot be balanced, since their rays differ: each step would only scale them further.
+constexpr double kProgress = 0.8;
 /// What a patch counts for is within this and its inverse, and rests on so many hits: one that
 /// hardly any row has hit stays about as it is.
-constexpr double kMostCounts = 2;
+constexpr double kMostCounts = 1.5;
 constexpr double kCredibleHits = 16;
 /// A row that falls below this share of its sum has fits that what patches count for upsets.
 constexpr double kSound = 0.5;
@@ -177,6 +180,7 @@ CutBalance balanceCut(CutParts& parts, std::span<const double> sums, Progress& p
   for (std::size_t k = 0; k < patches.size(); ++k) power += patches[k].area * sums[k];
   if (!(power > 0)) return balance;
   const double credible = kCredibleHits * powerOfAHit(parts);
+  double last = 0;
   for (int step = 0;; ++step) {
     progress.check();
     const std::vector<double> columns = columnSums(parts);
@@ -187,6 +191,8 @@ CutBalance balanceCut(CutParts& parts, std::span<const double> sums, Progress& p
     balance.after = off / power;
     if (step == 0) balance.before = balance.after;
     if (balance.after <= kBalanced || step == kBalanceSteps) break;
+    if (step > 0 && balance.after > kProgress * last) break;
+    last = balance.after;
     for (std::size_t k = 0; k < patches.size(); ++k) {
       const double wanted = patches[k].area * sums[k];
       const double times = (wanted + credible) / (std::max(0.0, columns[k]) + credible);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,44 @@ TEST(Cut, DoesNotDependOnPlaceAndSize) {
     // Single rays end elsewhere where coordinates round otherwise.
     EXPECT_LT(apart, 0.02) << scale;
   }
+}
+
+/// A pitted plain of triangles, 1 apart.
+PatchMesh pittedPlain(int side) {
+  test::SceneBuilder builder;
+  const Index plain = builder.surface("plain");
+  const auto at = [](int i, int j) {
+    const double x = 0.9 * i;
+    const double y = 0.9 * j;
+    const double deep = std::sin(x) * std::cos(1.3 * y + 0.3 * x);
+    return Vec3(i, j, -2 * std::max(0.0, deep) + 0.3 * std::sin(7.0 * i + 11.0 * j));
+  };
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      builder.face(plain, {at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      builder.face(plain, {at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return test::meshOf(builder.scene(), 1, true);
+}
+
+// Where few patches see each other, what each of them sees of the other cannot be balanced: their
+// rays differ. Scaled ever more, some got twice what could fall on them.
+TEST(Cut, GivesNoPatchMoreThanShines) {
+  const PatchMesh mesh = pittedPlain(45);
+  const FormFactors f = test::computed(mesh, byCuts(0.02));
+  std::vector<double> light;
+  const Vec3 sun = glm::normalize(Vec3(1, 0.4, 0.2));
+  for (const Vec3& normal : mesh.normal) light.push_back(std::max(0.0, glm::dot(sun, normal)));
+  const double most = std::ranges::max(light);
+  std::vector<double> irradiance(light.size());
+  f.matrix->product(light, 1, irradiance);
+  double worst = 0;
+  for (Index i = 0; i < mesh.size(); ++i) {
+    if (f.fronts[i] > 0.01) worst = std::max(worst, irradiance[i] / (most * f.fronts[i]));
+  }
+  // Fits over nodes may exceed what is in them, by less than a third here.
+  EXPECT_LT(worst, 1.33);
 }
 
 TEST(Cut, HasTheSameBitsForAnyThreads) {
