@@ -395,6 +395,52 @@ TEST_F(SceneGltf, ReadsLampsWithProfiles) {
   EXPECT_CONTAINS(errorOf(d), "other.ies: no such file");
 }
 
+/// A lamp of each of these extensions, all of the profile 0.
+Document withProfile(Document d, const std::vector<Json>& lamps) {
+  d.json["extensionsUsed"] = {"EXT_lights_ies"};
+  d.json["extensions"]["EXT_lights_ies"]["lights"] = {{{"uri", "lamp.ies"}}};
+  for (Json extension : lamps) {
+    extension["light"] = 0;
+    d.json["scenes"][0]["nodes"].push_back(d.json["nodes"].size());
+    d.json["nodes"].push_back({{"name", "lamp"}, {"extensions", {{"EXT_lights_ies", extension}}}});
+  }
+  return d;
+}
+
+// It states 1,000 lm, and has 100 cd to a hemisphere, of an opening of a metre.
+TEST_F(SceneGltf, SharesTheProfilesOfLamps) {
+  write("lamp.ies",
+        "IESNA:LM-63-2002\nTILT=NONE\n1 100 1 2 1 1 2 1 1 0\n1 1 0\n0 90\n0\n100 100\n");
+  const Scene scene = load(withProfile(triangle(), std::vector<Json>(3)));
+  ASSERT_EQ(scene.lights.size(), 4u);  // the sky
+  const auto isOfItsTable = [](const Note& note) { return note.text.starts_with("lamp.ies: "); };
+  EXPECT_EQ(std::ranges::count_if(scene.notes, isOfItsTable), 1);
+  const auto& first = std::get<PhotometricLight>(scene.lights[1].kind);
+  const auto& last = std::get<PhotometricLight>(scene.lights[3].kind);
+  EXPECT_EQ(&first.file.table(), &last.file.table());
+  // The extension has infinitely small points.
+  EXPECT_FALSE(first.isWide(Vec3(0, 0, -.1)));
+  EXPECT_EQ(first.file.table().size(), 0);
+}
+
+TEST_F(SceneGltf, RefusesFactorsOfLampsThatAreNone) {
+  write("lamp.ies", kQuarters);
+  const auto refusal = [&](const Json& extension) {
+    return errorOf(withProfile(triangle(), {extension}));
+  };
+  for (const Json& factor : {Json("2"), Json(-1), Json::array({1})}) {
+    EXPECT_CONTAINS(refusal({{"multiplier", factor}}),
+                    "node lamp: multiplier of its lamp is no number of 0 or more; correct it");
+  }
+  for (const Json& colour : {Json::array({1, 1}), Json::array({1, 1, 1, 1}), Json(1),
+                             Json::array({1, 1, "1"}), Json::array({1, 1, 2})}) {
+    EXPECT_CONTAINS(refusal({{"color", colour}}),
+                    "node lamp: color of its lamp is not three numbers from 0 to 1; correct it");
+  }
+  const Scene scene = load(withProfile(triangle(), {{{"multiplier", 0}, {"color", {0, 0.5, 1}}}}));
+  EXPECT_EQ(scene.lights.back().strength, std::vector<double>(3, 0.0));
+}
+
 TEST_F(SceneGltf, RefusesLightsThatAreNone) {
   EXPECT_CONTAINS(errorOf(withLights(triangle(), {{{"type", "point"}, {"intensity", -1}}})),
                   "is not a finite value of 0 or more");

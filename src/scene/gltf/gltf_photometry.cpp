@@ -1,8 +1,10 @@
 #include "scene/gltf/gltf_photometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <numbers>
 
 #include "base/base64.h"
@@ -14,9 +16,15 @@ namespace radiosity {
 
 namespace {
 
+/// The extension has infinitely small points, whatever opening a file gives.
+LampFile pointOf(std::string name, Photometry table) {
+  table.opening = Vec3(0.0);
+  return {std::move(name), std::move(table)};
+}
+
 /// An embedded file has no name of its own.
 LampFile embedded(const GltfFile& file, const std::string& name, std::string_view content) {
-  return {name, readIes(fmt::format("{}: {}", file.path, name), content)};
+  return pointOf(name, readIes(fmt::format("{}: {}", file.path, name), content));
 }
 
 LampFile profileOf(const GltfFile& file, const tinygltf::Value& profile, const std::string& name) {
@@ -39,7 +47,7 @@ LampFile profileOf(const GltfFile& file, const tinygltf::Value& profile, const s
   }
   const std::filesystem::path path =
       std::filesystem::path(file.path).parent_path() / decodedText(uri);
-  return {path.filename().string(), readPhotometry(path.string())};
+  return pointOf(path.filename().string(), readPhotometry(path.string()));
 }
 
 const tinygltf::Value& profilesOf(const GltfFile& file) {
@@ -59,38 +67,76 @@ double turnTo(const PhotometricLight& lamp, const Vec3& x) {
   return angle * 180 / std::numbers::pi;
 }
 
+/// Of a node's lamp: what its intensities are multiplied by, a band each.
+std::vector<double> factorsOf(const GltfFile& file, const tinygltf::Value& given,
+                              const std::string& what) {
+  std::vector<double> factors(3, 1.0);
+  if (given.Has("multiplier")) {
+    const tinygltf::Value& multiplier = given.Get("multiplier");
+    if (!multiplier.IsNumber() || !(multiplier.GetNumberAsDouble() >= 0)) {
+      file.fail(what + ": multiplier of its lamp is no number of 0 or more; correct it");
+    }
+    factors.assign(factors.size(), multiplier.GetNumberAsDouble());
+  }
+  if (!given.Has("color")) return factors;
+  const tinygltf::Value& colour = given.Get("color");
+  const bool is_whole = colour.IsArray() && colour.ArrayLen() == factors.size();
+  for (std::size_t band = 0; band < factors.size(); ++band) {
+    const double share = is_whole && colour.Get(int(band)).IsNumber()
+                             ? colour.Get(int(band)).GetNumberAsDouble()
+                             : -1;
+    if (!(share >= 0 && share <= 1)) {
+      file.fail(what + ": color of its lamp is not three numbers from 0 to 1; correct it");
+    }
+    factors[band] *= share;
+  }
+  return factors;
+}
+
 }  // namespace
 
-Light gltfPhotometricLight(const GltfFile& file, const tinygltf::Node& node,
-                           const glm::dmat4& transform, const std::string& what) {
-  const tinygltf::Value& given = node.extensions.at(kGltfPhotometry);
-  const tinygltf::Value& number = memberOf(given, "light");
-  const tinygltf::Value& all = profilesOf(file);
+const LampFile& GltfLamps::profile(const tinygltf::Value& number, const std::string& what) {
+  const tinygltf::Value& all = profilesOf(file_);
   if (!number.IsInt() || !all.IsArray() || number.GetNumberAsInt() < 0 ||
       std::size_t(number.GetNumberAsInt()) >= all.ArrayLen()) {
-    file.fail(what + ": its light profile does not exist; export the scene again");
+    file_.fail(what + ": its light profile does not exist; export the scene again");
   }
   const int index = number.GetNumberAsInt();
+  LampFile& profile = profiles_[index];
+  if (profile.empty()) {
+    profile = profileOf(file_, all.Get(index), fmt::format("light profile {}", index));
+  }
+  return profile;
+}
+
+Light GltfLamps::read(const tinygltf::Node& node, const glm::dmat4& transform,
+                      const std::string& what) {
+  const tinygltf::Value& given = node.extensions.at(kGltfPhotometry);
   PhotometricLight lamp;
-  lamp.file = profileOf(file, all.Get(index), fmt::format("light profile {}", index));
+  lamp.file = profile(memberOf(given, "light"), what);
   const Vec3 forward(transform * glm::dvec4(0, 0, -1, 0));
   const Vec3 side(transform * glm::dvec4(1, 0, 0, 0));
   lamp.at = Vec3(transform[3]);
   if (!isFinite(lamp.at) || !isFinite(forward) || !isFinite(side) || !(glm::length(forward) > 0) ||
       !(glm::length(side) > 0)) {
-    file.fail(what + ": its lamp has no place and direction; correct its transform");
+    file_.fail(what + ": its lamp has no place and direction; correct its transform");
   }
   lamp.aim = lamp.at + glm::normalize(forward);
   lamp.settle(Up::y);
   lamp.turn = turnTo(lamp, glm::normalize(side));
-  const tinygltf::Value& multiplier = memberOf(given, "multiplier");
-  const tinygltf::Value& colour = memberOf(given, "color");
-  const double flux = lamp.usual() * (multiplier.IsNumber() ? multiplier.GetNumberAsDouble() : 1);
-  Light light{"", std::move(lamp), std::vector<double>(3, flux)};
-  for (int band = 0; band < 3 && colour.IsArray() && colour.ArrayLen() == 3; ++band) {
-    light.strength[std::size_t(band)] *= colour.Get(band).GetNumberAsDouble();
+  std::vector<double> strength = factorsOf(file_, given, what);
+  for (double& flux : strength) flux *= lamp.usual();
+  return {"", std::move(lamp), std::move(strength)};
+}
+
+std::vector<std::string> GltfLamps::remarks() const {
+  std::vector<std::string> all;
+  for (const auto& [index, file] : profiles_) {
+    PhotometricLight lamp;
+    lamp.file = file;
+    std::ranges::move(lamp.remarks(), std::back_inserter(all));
   }
-  return light;
+  return all;
 }
 
 }  // namespace radiosity

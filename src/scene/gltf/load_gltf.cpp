@@ -28,6 +28,7 @@ class Reader {
         model_(file.model),
         options_(options),
         placement_(file),
+        lamps_(file),
         scene_(scene),
         builder_(scene, options) {}
 
@@ -60,6 +61,7 @@ class Reader {
   const tinygltf::Model& model_;
   const SceneOptions& options_;
   const GltfPlacement placement_;
+  GltfLamps lamps_;
   Scene& scene_;
   SceneBuilder builder_;
   GltfMaterials materials_;
@@ -81,6 +83,9 @@ void Reader::read() {
   forEachGltfNode(file_, [this](int node, const Transform& transform, const std::string& what) {
     readNode(node, transform, what);
   });
+  for (std::string& remark : lamps_.remarks()) {
+    scene_.notes.push_back({Severity::warning, std::move(remark)});
+  }
   noteUnused();
   if (scene_.faceCount() == 0) {
     file_.fail(fmt::format("no faces: no node of {} has a mesh of triangles; export meshes",
@@ -317,11 +322,8 @@ void Reader::readLight(const tinygltf::Node& node, const Transform& transform) {
 
 void Reader::readPhotometricLight(const tinygltf::Node& node, const Transform& transform) {
   const std::string what = "node " + node.name;
-  Light light = gltfPhotometricLight(file_, node, transform, what);
+  Light light = lamps_.read(node, transform, what);
   light.name = light_names_.make(node.name.empty() ? light.fileName() : node.name);
-  for (std::string& remark : light.remarks()) {
-    scene_.notes.push_back({Severity::warning, std::move(remark)});
-  }
   addChecked(std::move(light), what);
 }
 
