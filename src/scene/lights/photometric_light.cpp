@@ -33,10 +33,26 @@ struct OpeningFace {
 constexpr double kFar = 10;  // sizes; PhotometricLight::isWide()
 
 /// The opening as a convex body: a box, a cylinder along z, or what is left of these where it is
-/// flat.
+/// thin, a plate or a line.
 class OpeningBody {
  public:
-  explicit OpeningBody(const Photometry& table) : half_(table.opening / 2.0), round_(table.round) {}
+  explicit OpeningBody(const Photometry& table)
+      : half_(table.opening / 2.0), round_(table.round && half_.x > 0 && half_.y > 0) {}
+
+  /// Without a volume: all its points show from everywhere.
+  bool isThin() const { return !(half_.x > 0 && half_.y > 0 && half_.z > 0); }
+  /// Of a thin one, alike by area or length.
+  Vec3 point(double u, double v) const {
+    if (round_) return flat().point(u, v);
+    // A line takes u, a plate both.
+    Vec3 at(0.0);
+    const double off[] = {2 * u - 1, 2 * v - 1};
+    int used = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (half_[axis] > 0) at[axis] = off[used++] * half_[axis];
+    }
+    return at;
+  }
 
   /// The area that shows from far away in a direction, unit.
   double shown(const Vec3& direction) const {
@@ -46,7 +62,7 @@ class OpeningBody {
     return level + 4 * half_.z * (half_.y * d.x + half_.x * d.y);
   }
 
-  /// Up to three.
+  /// Of one that is not thin: up to three.
   struct Faces {
     std::array<OpeningFace, 3> all;
     std::size_t count = 0;
@@ -55,19 +71,16 @@ class OpeningBody {
   Faces facesTo(const Vec3& place) const {
     Faces faces;
     const auto add = [&](const OpeningFace& face) {
-      if (!(face.area > 0) || !(glm::dot(place - face.middle, face.normal) > 0)) return;
-      faces.all[faces.count++] = face;
+      if (glm::dot(place - face.middle, face.normal) > 0) faces.all[faces.count++] = face;
     };
     const Vec3 side = glm::sign(place);
     const Vec3 x(half_.x, 0, 0);
     const Vec3 y(0, half_.y, 0);
     const Vec3 z(0, 0, half_.z);
-    add({side.z * z,
-         x,
-         y,
-         {0, 0, side.z},
-         (round_ ? std::numbers::pi : 4.0) * half_.x * half_.y,
-         round_});
+    OpeningFace level = flat();
+    level.middle = side.z * z;
+    level.normal = {0, 0, side.z};
+    add(level);
     if (round_) {
       const double off = std::hypot(place.x, place.y);
       if (!(off > 0)) return faces;
@@ -82,6 +95,16 @@ class OpeningBody {
   }
 
  private:
+  /// The face across z, in the middle, to the front.
+  OpeningFace flat() const {
+    return {Vec3(0.0),
+            {half_.x, 0, 0},
+            {0, half_.y, 0},
+            {0, 0, 1},
+            (round_ ? std::numbers::pi : 4.0) * half_.x * half_.y,
+            round_};
+  }
+
   /// Half the width of the ellipse as it shows along a direction, level or not.
   double widthAcross(const Vec3& d) const {
     const double level = std::hypot(d.x, d.y);
@@ -135,8 +158,11 @@ LightRay PhotometricLight::ray(const Vec3& place, double u, double v) const {
   const Photometry& table = file.table();
   Vec3 to(glm::dot(way, x), glm::dot(way, y), glm::dot(way, z));
   double share = 1 / file.flux();
-  if (isWide(place)) {
-    const OpeningBody body(table);
+  const OpeningBody body(table);
+  if (isWide(place) && body.isThin()) {
+    // In every direction each part has the same share of what shows, so of the intensity, too.
+    to -= body.point(u, v);
+  } else if (isWide(place)) {
     const auto [faces, count] = body.facesTo(to);
     double whole = 0;
     std::array<double, 3> shown{};
