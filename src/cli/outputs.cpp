@@ -108,6 +108,9 @@ std::vector<InputPath> inputsOf(const Request& request) {
                                    {"the file of --areas", request.areas},
                                    {"the table of --basis", basis_file ? request.basis : ""},
                                    {"the file of --materials", request.scene.materials_file}};
+  for (const std::string& path : request.light_lists) {
+    inputs.push_back({"the list of --lights", path});
+  }
   for (const PointsAsked& asked : request.points) {
     if (asked.kind == PointsAsked::Kind::points) {
       inputs.push_back({"the table of --points", asked.text});

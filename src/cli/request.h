@@ -32,6 +32,7 @@ struct Request {
   bool devices = false;  ///< of `info`: list devices for hemicubes, instead of a scene
 
   SceneOptions scene;
+  std::vector<std::string> light_lists;  ///< files of --lights, whose lights are in `scene`
 
   /// Of the scene, the stages, pictures and comparisons.
   GivenOptions given;

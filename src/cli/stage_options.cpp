@@ -56,14 +56,15 @@ void addLightsOption(CLI::App& app, Request& r) {
       ->option_text("KIND,STRENGTH,...")
       ->allow_extra_args(false);
   const auto take_file = [&r](const std::string& path) {
-    nameOption("--lights", [&] {
-      for (const Light& light : readLights(path)) addLight(r.scene.lights, light);
-    });
+    nameOption("--lights", [&] { addLights(path, r.scene.lights); });
+    r.light_lists.push_back(path);
   };
   app.add_option_function<std::string>(
          "--lights", take_file,
          "Lights of a list, as --light has them: [{\"kind\": \"ies\", \"file\": \"panel.ldt\", "
-         "\"at\": [1, 2, 2.5], \"name\": \"desk\"}]; files of lamps are sought beside it")
+         "\"at\": [1, 2, 2.5], \"name\": \"desk\"}]; files of lamps are sought beside it, and no "
+         "two have the "
+         "same name")
       ->group("Scene")
       ->option_text("FILE.json");
 }

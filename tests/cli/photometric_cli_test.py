@@ -83,7 +83,7 @@ class PhotometricLamps(CliTest):
         for text, words in [("{}", ["bad.json: is not a list of lights"]), ("[]", ["bad.json: has no lights"]),
                             ("[1]", ["bad.json: light 1 is no object"]), ("[{}]", ["no light is called ''"]),
                             ('[{"kind": "point", "intensity": true}]', ["light 1: intensity is no number"]),
-                            ('[{"kind": "point", "intensity": "1,at=2"}]', ["light 1: intensity is no number"]),
+                            ('[{"kind": "point", "intensity": "1,at=2"}]', ["light 1: intensity '1,at=2' has a ="]),
                             ('[{"kind": "point", "intensity": 1, "at": [[1]]}]', ["light 1: at is no number"]),
                             ('[{"kind": "point", "power": 1}]', ["bad.json: light 1: ", "'power' is no parameter"]),
                             ('[{"kind": "ies", "file": "none.ies"}]', ["light 1: none.ies: no such file"]),
@@ -91,6 +91,39 @@ class PhotometricLamps(CliTest):
             with self.subTest(text):
                 self.write("bad.json", text)
                 self.refuse("solve", "box.obj", "--lights", "bad.json", words=["--lights: ", *words])
+
+    def test_lists_lose_no_lamp(self):
+        def names(entries, *before):
+            self.write("list.json", "[" + ",".join(
+                '{"kind": "%s", "file": "lamp.ies", "at": [0.5, 0.9, 0.5]%s}' % (kind, rest)
+                for kind, rest in entries) + "]")
+            self.run_program("mesh", "box.obj", *SMALL[:2], *before, "--lights", "list.json", "-o", "a.h5")
+            return [light["name"] for light in self.report("info", "a.h5")["scene"]["lights"]]
+
+        single = ["--light", "ies,lamp.ies,at=.5,.5,.5"]
+        unnamed = ("ies", "")
+        self.assertEqual(names([unnamed, unnamed], *single), ["ies", "ies 2", "ies 3"])
+        # The second takes no name that a later one has.
+        self.assertEqual(names([unnamed, unnamed, ("ies", ', "name": "ies 2"')]), ["ies", "ies 3", "ies 2"])
+        # A name that is there already is meant.
+        self.assertEqual(names([("ies", ', "name": "desk"')], *single, "--light", "point,7,name=desk"), ["ies", "desk"])
+        for text, line in [('{"kind": "point", "intensity": 1, "name": "desk"}', "'desk'"),
+                           ('{"kind": "sun"}', "'sun'"), ('{"kind": "sky", "radiance": 1}', "'sky'")]:
+            with self.subTest(text):
+                self.write("bad.json", f'[{text}, {{"kind": "point", "intensity": 1}}, {text}]')
+                self.refuse("solve", "box.obj", "--lights", "bad.json",
+                            words=[f"--lights: bad.json: lights 1 and 3 are both called {line}; give each a name"])
+
+    def test_a_list_and_its_lamps_are_not_replaced(self):
+        self.write("a.json", '[{"kind": "ies", "file": "lamp.ies", "at": [0.5, 0.9, 0.5]}]')
+        before = {name: (self.folder / name).read_bytes() for name in ("a.json", "lamp.ies")}
+        for option in ("-o", "--report"):
+            self.refuse("factors", "box.obj", *SMALL, "--lights", "a.json", option, "a.json",
+                        words=["a.json: is the list of --lights; write to another name"])
+        for lights in (["--lights", "a.json"], ["--light", "ies,lamp.ies"]):
+            self.refuse("factors", "box.obj", *SMALL, "--quiet", *lights, "--report", "lamp.ies",
+                        words=["lamp.ies: is a file of"])
+        self.assertEqual(before, {name: (self.folder / name).read_bytes() for name in before})
 
     def test_what_is_no_lamp_is_refused(self):
         self.write("bad.ies", lamp("100 -1"))

@@ -12,6 +12,7 @@
 namespace radiosity {
 namespace {
 
+using test::EulumdatLamp;
 using test::IesLamp;
 
 class PhotometricLights : public test::SceneFiles {
@@ -146,6 +147,70 @@ TEST_F(PhotometricLights, OfAllShapesSendTheirIntensity) {
   }
 }
 
+// A line of length 2 a, of the same intensity I everywhere, each length of it I / 2 a: at h across
+// its middle the integral of h / (h^2 + x^2)^(3/2) is 1 / (h sqrt(h^2 + a^2)), and at d > a from
+// its middle along it that of 1 / (d - x)^2 is 1 / (d^2 - a^2).
+TEST_F(PhotometricLights, OfALineShineNearBy) {
+  constexpr double kA = .6;
+  const auto mean = [](const Light& light, const Vec3& place, const Vec3& normal) {
+    EXPECT_TRUE(light.isWide(place));
+    constexpr int kSteps = 2000;  // of midpoints: 1e-6 at h = a / 3
+    double sum = 0;
+    for (int k = 0; k < kSteps; ++k) {
+      const LightRay ray = light.ray(place, (k + .5) / kSteps, .3);
+      sum += ray.share * glm::dot(ray.toward, normal) / kSteps;
+    }
+    return sum * light.strength[0] * kLumensPerWatt;
+  };
+  EulumdatLamp eulumdat;
+  eulumdat.symmetry = 1;
+  eulumdat.rows = {0};
+  eulumdat.area = "0\n1200\n0\n0\n0\n0\n";
+  IesLamp ies;
+  ies.vertical = {0, 180};
+  const auto of_ies = [&](const char* opening) {
+    ies.opening = opening;
+    return light(ies, ",1W");
+  };
+  const std::string file = write("lamp.ldt", eulumdat.text());
+  const std::pair<Light, Vec3> lamps[] = {{of_ies("2 0 1.2 0"), {1, 0, 0}},
+                                          {of_ies("2 1.2 0 0"), {0, 1, 0}},
+                                          {of_ies("2 0 0 1.2"), {0, 0, 1}},
+                                          {lightOf("ies," + file + ",1W"), {1, 0, 0}}};
+  for (const auto& [lamp, along] : lamps) {
+    const Vec3 across(along.z, along.x, along.y);
+    const double candela = kLumensPerWatt / (4 * std::numbers::pi);
+    for (const double h : {.2, 1.0, 5.0}) {
+      EXPECT_NEAR(mean(lamp, h * across, -across), candela / (h * std::hypot(h, kA)),
+                  1e-5 * candela / (h * h))
+          << h;
+    }
+    EXPECT_NEAR(mean(lamp, 1.5 * along, -along), candela / (1.5 * 1.5 - kA * kA), 1e-5 * candela);
+  }
+}
+
+// So does a plate in its own plane: of a square of side 2 a, what stands at x on an axis of it and
+// faces it has from the strip at s, in the mean over its length, the same as across a line.
+TEST_F(PhotometricLights, OfAPlateShineInItsPlane) {
+  IesLamp lamp;
+  lamp.vertical = {0, 180};
+  lamp.opening = "2 1 1 0";
+  const Light made = light(lamp, ",1W");
+  constexpr int kSteps = 200;
+  double sum = 0;
+  double expected = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double s = (i + .5) / kSteps - .5;
+    expected += 1 / ((2 - s) * std::hypot(2 - s, .5)) / kSteps;
+    for (int j = 0; j < kSteps; ++j) {
+      const LightRay ray = made.ray({2, 0, 0}, (i + .5) / kSteps, (j + .5) / kSteps);
+      sum += ray.share * -ray.toward.x / kSteps / kSteps;
+    }
+  }
+  // Midpoints across t are off by 1e-6 of it.
+  EXPECT_NEAR(sum * 4 * std::numbers::pi, expected, 1e-5 * expected);
+}
+
 TEST_F(PhotometricLights, TextsGiveTheSameLightAgain) {
   const Light made = light(quarters(), ",1,2,3W,at=1,2,2.5,aim=0,.1,0,turn=-30,name=Desk%20lamp");
   std::filesystem::remove(path("lamp.ies"));
@@ -203,7 +268,12 @@ TEST_F(PhotometricLights, ThatAreNoneAreRefusedInALine) {
                 "W (or lm)");
   EXPECT_CONTAINS(refusal("ies," + file + ",width=3"),
                   "'width' is no parameter of it; there are flux, name, file, at, aim, turn");
-  EXPECT_EQ(refusal("ies,1,file=a.ies|c|0"), "the table of a lamp is damaged");
+  EXPECT_EQ(refusal("ies,1,file=a.ies|c|0"),
+            "a.ies: its table is damaged; give the lamp's file again, and write %7c for a | in its "
+            "name");
+  EXPECT_CONTAINS(refusal("ies,1,file=a|b.ies"), "a: its table is damaged");
+  write("a|b.ies", IesLamp().text());
+  EXPECT_EQ(lightOf("ies,1,file=" + path("a%7cb.ies")).fileName(), "a|b.ies");
 }
 
 }  // namespace

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "base/input_file.h"
 #include "base/printable.h"
 #include "scene/json_scan.h"
+#include "scene/lights/light_names.h"
 #include "scene/lights/light_text.h"
 
 namespace radiosity {
@@ -16,6 +19,7 @@ namespace {
 /// A light of the list, while it is read.
 struct ListedLight {
   std::string kind;
+  std::string name;  ///< empty: it has none
   std::string text;  ///< ",NAME=VALUE" of each
 };
 
@@ -27,24 +31,53 @@ class LightList {
     if (listed_.empty()) fail("has no lights; write [{\"kind\": \"point\", \"intensity\": 10}]");
   }
 
-  std::vector<Light> lights() const {
-    std::vector<Light> lights;
+  void addTo(std::vector<Light>& lights) {
+    std::vector<Light> all;
     for (std::size_t k = 0; k < listed_.size(); ++k) {
-      const auto& [kind, text] = listed_[k];
-      try {
-        Light light = lightOf(kind, text.substr(text.empty() ? 0 : 1));
-        light.validate();
-        addLight(lights, std::move(light));
-      } catch (const InputError& error) {
-        fail(fmt::format("light {}: {}", k + 1, error.what()));
-      }
+      all.push_back(lightAt(k));
+      if (listed_[k].name.empty() && all[k].traits().single) listed_[k].name = all[k].name;
     }
-    return lights;
+    requireNamesOfTheirOwn();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (listed_[k].name.empty()) {
+        all[k].name = nextName(all[k].name, [&](const std::string& name) {
+          return isCalled(lights, name) || isListed(name);
+        });
+      }
+      setLight(lights, std::move(all[k]));
+    }
   }
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{}: {}", path_, what));
+  }
+
+  Light lightAt(std::size_t k) const {
+    try {
+      const std::string& text = listed_[k].text;
+      Light light = lightOf(listed_[k].kind, text.substr(text.empty() ? 0 : 1));
+      light.validate();
+      return light;
+    } catch (const InputError& error) {
+      fail(fmt::format("light {}: {}", k + 1, error.what()));
+    }
+  }
+
+  bool isListed(const std::string& name) const {
+    return std::ranges::find(listed_, name, &ListedLight::name) != listed_.end();
+  }
+
+  void requireNamesOfTheirOwn() const {
+    std::map<std::string, std::size_t> first;
+    for (std::size_t k = 0; k < listed_.size(); ++k) {
+      const std::string& name = listed_[k].name;
+      if (name.empty()) continue;
+      const auto [same, is_new] = first.emplace(name, k);
+      if (is_new) continue;
+      fail(fmt::format("lights {} and {} are both called '{}'; give each a name of its own",
+                       same->second + 1, k + 1, printable(name)));
+    }
   }
 
   void visit(std::span<const JsonStep> at, const JsonValue& value) {
@@ -75,6 +108,7 @@ class LightList {
       return;
     }
     light.text += fmt::format(",{}=", encodedText(name));
+    if (value.kind == JsonKind::text && name == "name") light.name = value.text;
     if (value.kind == JsonKind::number) {
       light.text += fmt::format("{}", value.number);
     } else if (value.kind == JsonKind::text) {
@@ -90,7 +124,10 @@ class LightList {
       const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
       return encodedText((folder / std::filesystem::path(text)).string());
     }
-    if (text.find('=') != text.npos) refuse(name);
+    if (text.find('=') != text.npos) {
+      fail(fmt::format("light {}: {} '{}' has a =; give each parameter a member of its own",
+                       listed_.size(), printable(name), printable(text)));
+    }
     return std::string(text);
   }
 
@@ -105,6 +142,8 @@ class LightList {
 
 }  // namespace
 
-std::vector<Light> readLights(const std::string& path) { return LightList(path).lights(); }
+void addLights(const std::string& path, std::vector<Light>& lights) {
+  LightList(path).addTo(lights);
+}
 
 }  // namespace radiosity

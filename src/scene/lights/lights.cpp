@@ -9,6 +9,7 @@
 #include "base/option_list.h"
 #include "radiosity/light.h"
 #include "radiosity/spelling.h"
+#include "scene/lights/light_names.h"
 
 namespace radiosity {
 
@@ -177,6 +178,17 @@ std::vector<Light> aimedLights(std::span<const Light> lights) {
   return aimed;
 }
 
+std::string nextName(const std::string& word,
+                     const std::function<bool(const std::string&)>& is_taken) {
+  std::string name = word;
+  for (int k = 2; is_taken(name); ++k) name = fmt::format("{} {}", word, k);
+  return name;
+}
+
+bool isCalled(std::span<const Light> lights, const std::string& name) {
+  return std::ranges::find(lights, name, &Light::name) != lights.end();
+}
+
 void setLight(std::vector<Light>& lights, Light light) {
   const auto same = std::ranges::find(lights, light.name, &Light::name);
   if (same == lights.end()) {
@@ -188,11 +200,8 @@ void setLight(std::vector<Light>& lights, Light light) {
 
 void addLight(std::vector<Light>& lights, Light light) {
   const std::string word = light.traits().word;
-  const auto isTaken = [&](const std::string& name) {
-    return std::ranges::find(lights, name, &Light::name) != lights.end();
-  };
   if (!light.traits().single && light.name == word) {
-    for (int k = 2; isTaken(light.name); ++k) light.name = fmt::format("{} {}", word, k);
+    light.name = nextName(word, [&](const std::string& name) { return isCalled(lights, name); });
   }
   setLight(lights, std::move(light));
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 
@@ -21,11 +22,13 @@ constexpr char kBetweenNumbers = '/';
 /// As they stand in texts.
 constexpr std::string_view kTypeWords[] = {"c", "b", "a"};
 
+constexpr const char* kDamaged = "its table is damaged";
+
 std::vector<double> numbersIn(std::string_view text) {
   std::vector<double> numbers;
   for (const std::string_view word : splitAt(text, kBetweenNumbers)) {
     const std::optional<double> number = parseNumber(word);
-    if (!number) throw InputError("the table of a lamp is damaged");
+    if (!number) throw InputError(kDamaged);
     numbers.push_back(*number);
   }
   return numbers;
@@ -47,16 +50,14 @@ Photometry Photometry::ofText(std::string_view text) {
   const std::vector<std::string_view> parts = splitAt(text, kBetween);
   Photometry table;
   const auto* const word = std::ranges::find(kTypeWords, parts[0]);
-  if (parts.size() != 6 || word == std::end(kTypeWords)) {
-    throw InputError("the table of a lamp is damaged");
-  }
+  if (parts.size() != 6 || word == std::end(kTypeWords)) throw InputError(kDamaged);
   table.type = PhotometryType(word - kTypeWords);
   table.round = parts[1].starts_with('o');
   const std::vector<double> sizes = numbersIn(parts[1].substr(table.round ? 1 : 0));
   const std::vector<double> lumens = numbersIn(parts[2]);
   const std::optional<std::string> bytes = ofBase64(parts[5]);
   if (sizes.size() != 3 || lumens.size() != 2 || !bytes || bytes->size() % sizeof(float) != 0) {
-    throw InputError("the table of a lamp is damaged");
+    throw InputError(kDamaged);
   }
   table.opening = {sizes[0], sizes[1], sizes[2]};
   table.lamps = lumens[0];
@@ -78,12 +79,26 @@ std::string LampFile::optionText() const {
   return empty() ? "" : encodedText(name_) + kBetween + table_->text();
 }
 
+namespace {
+
+Photometry tableOf(const std::string& name, std::string_view text) {
+  try {
+    return Photometry::ofText(text);
+  } catch (const InputError& error) {
+    throw InputError(
+        fmt::format("{}: {}; give the lamp's file again, and write %7c for a | in its name",
+                    printable(name), error.what()));
+  }
+}
+
+}  // namespace
+
 bool LampFile::readOption(std::string_view text) {
   const std::size_t bar = text.find(kBetween);
   const std::string name = decodedText(text.substr(0, bar));
   if (name.empty()) return false;
   if (bar != text.npos) {
-    *this = LampFile(name, Photometry::ofText(text.substr(bar + 1)));
+    *this = LampFile(name, tableOf(name, text.substr(bar + 1)));
   } else {
     *this = LampFile(std::filesystem::path(name).filename().string(), readPhotometry(name));
   }
