@@ -50,15 +50,23 @@ inline constexpr std::size_t kMostGridPoints = 1000000;
 double standardSpacing(double longer, double shorter);
 
 /// A regular grid over a planar surface of the scene, `height` metres above it along its normal
-/// (below 0: over its other side, and facing there). Of a surface that is not planar, the faces
-/// that face up are meant if they are in one plane. Rows are parallel to a side of the smallest
-/// rectangle around the surface; points outside of its outline are left out. `spacing`: metres,
-/// with borders alike at both ends; none: standardSpacing(), with borders of half a cell. `name`:
-/// of a surface, an object or a material. Errors: InputError for a name that nothing has, with the
-/// nearest ones, a surface that is not planar or without area, a spacing that leaves no point or
-/// takes more than kMostGridPoints, and numbers that are not finite.
+/// (below 0: over its other side, and facing there). Of a thin board its upper side is meant, and
+/// of a surface that is not planar the faces that face up, if they are in one plane. Rows are
+/// parallel to a side of the smallest rectangle around the surface; points outside of its outline
+/// are left out. `spacing`: metres, with borders alike at both ends; none: standardSpacing(), with
+/// borders of half a cell. `name`: of a surface, an object or a material. Errors: InputError for a
+/// name that nothing has, with the nearest ones, a surface that is not planar or without area, a
+/// thin board that stands upright, a spacing that leaves no point or takes more than
+/// kMostGridPoints, and numbers that are not finite.
 MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, double height = 0,
                                   std::optional<double> spacing = {});
+
+/// The same for a name that may be a pattern: a grid for each surface that it matches, or one for
+/// all of them if they are in one plane and face alike. Errors: as above, naming the surface that
+/// does not fit.
+std::vector<MeasuringPoints> pointsOverSurfaces(const Scene& scene, const std::string& name,
+                                                double height = 0,
+                                                std::optional<double> spacing = {});
 
 /// A grid over a parallelogram given by three corners in turn, metres. It faces the side from which
 /// they are counter-clockwise. Errors: as above.
@@ -113,7 +121,8 @@ struct IlluminanceReport {
   DirectLight direct = DirectLight::none;
   double rays = 0;            ///< of indirect light
   std::size_t most_rays = 0;  ///< of a point
-  /// Standard errors over all light of the point, facing: the largest, and the root mean square.
+  /// Standard errors over all light of the point, facing: the largest, and the root mean square, of
+  /// points that stand in no body.
   double largest_error = 0;
   std::size_t largest_error_at = 0;  ///< the point
   double ray_error = 0;
@@ -165,13 +174,15 @@ double illuminanceOf(std::span<const double> irradiance);
 
 /// Light at points of a solved scene. `irradiance`: N * bands, of the solved patches, W/m^2;
 /// `normals`: a point each. A point may stand anywhere; it is taken to be 2e-6 of the scene's
-/// diagonal off its place, along its normal. Direct light, facing: exact, with what hides emitters
-/// clipped off; past more than 256 convex pieces, or of more than 128 emitters, by rays to points
-/// of them. Indirect light by rays in all directions, in eight sets, whose spread tells the error;
-/// they serve all that is measured. Cylinders by 31 upright surfaces (direct light; .06% off for a
-/// small lamp, at most) and by the rays themselves. `elements`: of the sources of indirect light.
-/// The same bits for any number of threads. Errors: InputError for options out of range, sizes that
-/// do not match, a coordinate that is not finite and a normal that has no length. Throws Cancelled.
+/// diagonal off its place, along its normal. Direct light, facing, of surfaces and of points is
+/// exact, with what hides them clipped off; past more than 256 convex pieces, or of more than 128
+/// emitters, it is by rays to points of them. That of suns, and of photometric lamps near by, is by
+/// 16, 64 or 1,024 rays each. Indirect light by rays in all directions, in eight sets, whose spread
+/// tells the error; they serve all that is measured. Cylinders by 31 upright surfaces (direct
+/// light; .06% off for a small lamp, at most) and by the rays themselves. `elements`: of the
+/// sources of indirect light. The same bits for any number of threads. Errors: InputError for
+/// options out of range, sizes that do not match, a coordinate that is not finite and a normal that
+/// has no length. Throws Cancelled.
 PointLightValues lightAtPoints(const PatchMesh& mesh, const PatchMaterials& materials,
                                std::span<const double> irradiance, const ElementOptions& elements,
                                std::span<const Vec3> points, std::span<const Vec3> normals, Up up,

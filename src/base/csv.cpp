@@ -169,9 +169,10 @@ void takeHeader(const CsvReader& reader, const CsvTable::Row& row, CsvTable& tab
 void addRow(const CsvReader& reader, CsvTable::Row row, CsvTable& table) {
   dropBlankEnd(row.fields, table.header.size());
   if (row.fields.size() != table.header.size()) {
-    reader.fail(row.line, fmt::format("{} fields, and the header has {}; give one a column, with "
+    reader.fail(row.line, fmt::format("{} fields, and the {} has {}; give one a column, with "
                                       "commas between them and points in numbers",
-                                      row.fields.size(), table.header.size()));
+                                      row.fields.size(), table.has_header ? "header" : "first line",
+                                      table.header.size()));
   }
   for (std::string& field : row.fields) field = std::string(withoutBlanks(field));
   table.rows.push_back(std::move(row));
@@ -191,11 +192,12 @@ CsvTable parseCsv(const std::string& path, std::string_view text,
   requireCommas(reader, row);
   dropBlankEnd(row.fields, 1);
   table.header_line = row.line;
-  if (isOfNumbers(row, unnamed.size())) {
+  table.has_header = !isOfNumbers(row, unnamed.size());
+  if (table.has_header) {
+    takeHeader(reader, row, table);
+  } else {
     table.header.assign(unnamed.begin(), unnamed.begin() + std::ptrdiff_t(row.fields.size()));
     addRow(reader, std::move(row), table);
-  } else {
-    takeHeader(reader, row, table);
   }
   while (reader.next(row)) addRow(reader, std::move(row), table);
   return table;

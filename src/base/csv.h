@@ -21,6 +21,7 @@ struct CsvTable {
     std::vector<std::string> fields;
   };
   std::string path;
+  bool has_header = true;           ///< or a first line of numbers
   std::size_t header_line = 0;      ///< of the file, from 1
   std::vector<std::string> header;  ///< without blanks at their ends
   std::vector<Row> rows;            ///< each of as many fields as the header

@@ -36,6 +36,17 @@ void checkMeasuring(const Request& request, const OutputSet& files) {
   }
 }
 
+/// A pattern may mean thousands of surfaces; a plan has some 20 MB.
+void requireFewPlans(std::span<const MeasuringPoints> sets, const OutputSet& files) {
+  constexpr std::ptrdiff_t kMostPlans = 50;
+  const auto plans = std::ranges::count_if(sets, [](const auto& set) { return bool(set.grid); });
+  if (!files.has(Format::png) || plans <= kMostPlans) return;
+  throw InputError(
+      fmt::format("{}: there are {} grids, and a picture has {} plans at most; name "
+                  "fewer surfaces, or write the points to a .csv",
+                  files.path(Format::png), plans, kMostPlans));
+}
+
 void requireLuxBands(const Pipeline& pipeline) {
   illuminanceOf(std::vector<double>(std::size_t(pipeline.bands()), 0.0));
 }
@@ -58,8 +69,10 @@ bool isBeyond(const MeasuringPoints& set, const PatchMesh& mesh) {
 std::vector<MeasuringPoints> measuringPoints(Session& session, const Scene& scene) {
   std::vector<MeasuringPoints> sets;
   for (const PointsAsked& asked : session.request.points) {
-    sets.push_back(pointsOf(asked, scene));
-    session.report.notes(sets.back().notes);
+    for (MeasuringPoints& set : pointsOf(asked, scene)) {
+      session.report.notes(set.notes);
+      sets.push_back(std::move(set));
+    }
   }
   return sets;
 }
@@ -132,8 +145,8 @@ void summarizeMeasuring(Report& report, const PointLightValues& light, double as
     const std::size_t worst = light.report.largest_error_at;
     report.line(
         "note",
-        fmt::format("some points took all rays that a point may have, and are off by more than "
-                    "{} %: one of {} lx by {} %",
+        fmt::format("at some points direct or indirect light took all rays that it may, and the "
+                    "standard error is above {} %: at one of {} lx it is {} %",
                     numberText(100 * asked, 3), numberText(light.lux(worst, Measured::facing), 3),
                     numberText(100 * light.report.largest_error, 3)));
   }
@@ -168,6 +181,7 @@ int runIlluminance(Session& session) {
   requireLuxBands(pipeline);
   requireLight(session, pipeline);
   const std::vector<MeasuringPoints> sets = measuringPoints(session, pipeline.scene());
+  requireFewPlans(sets, files);
   if (!files.has(Format::results) && pipeline.onlyAdds()) {
     files.add({session.request.input, Format::results});
   }

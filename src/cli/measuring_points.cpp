@@ -82,20 +82,20 @@ void checkPoints(const PointsAsked& asked) {
   }
 }
 
-MeasuringPoints pointsOf(const PointsAsked& asked, const Scene& scene) {
+std::vector<MeasuringPoints> pointsOf(const PointsAsked& asked, const Scene& scene) {
   switch (asked.kind) {
     case PointsAsked::Kind::grid: {
       const GridText grid = parseGrid(asked.text);
-      return pointsOverSurface(scene, grid.surface, grid.height, grid.spacing);
+      return pointsOverSurfaces(scene, grid.surface, grid.height, grid.spacing);
     }
     case PointsAsked::Kind::plane: {
       const PlaneText plane = parsePlane(asked.text);
-      return pointsOnPlane(plane.corners, plane.spacing);
+      return {pointsOnPlane(plane.corners, plane.spacing)};
     }
     case PointsAsked::Kind::points:
       break;
   }
-  return readMeasuringPoints(asked.text, scene.up);
+  return {readMeasuringPoints(asked.text, scene.up)};
 }
 
 }  // namespace radiosity::cli

@@ -18,7 +18,8 @@ struct PointsAsked {
 /// Checks what needs no scene, so that none is read in vain. Errors: InputError naming the option.
 void checkPoints(const PointsAsked& asked);
 
-/// The points. Errors: InputError naming the option.
-MeasuringPoints pointsOf(const PointsAsked& asked, const Scene& scene);
+/// The points: one set, or of a grid over a pattern of names as many as it has planes. Errors:
+/// InputError naming the option.
+std::vector<MeasuringPoints> pointsOf(const PointsAsked& asked, const Scene& scene);
 
 }  // namespace radiosity::cli

@@ -28,7 +28,8 @@ void addPointOptions(CLI::App& app, Request& r) {
       "A grid over a planar surface (or object, or material), HEIGHT metres above it along its "
       "normal (default 0; below 0: over its other side), SPACING metres apart (default: that "
       "of EN 12464-1, .2 * 5^lg(longer side), with borders of half of it). Of a surface that "
-      "is not planar, the faces that face up. May be repeated, as the next two");
+      "is not planar, and of a thin board, the faces that face up. A pattern of surfaces in "
+      "several planes has a grid for each. May be repeated, as the next two");
   addPoints(app, r, "--plane", PointsAsked::Kind::plane, "X,Y,Z:X,Y,Z:X,Y,Z[:SPACING]",
             "A grid on a parallelogram by three corners in turn, metres; it faces the side from "
             "which they are counter-clockwise");

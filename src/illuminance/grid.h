@@ -1,7 +1,6 @@
 // Regular grids in a plane.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 

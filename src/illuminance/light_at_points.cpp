@@ -264,17 +264,19 @@ PointLightValues lightAtPoints(const PatchMesh& mesh, const PatchMaterials& mate
   out.report.direct = meter.direct();
   out.report.seconds = watch.seconds();
   double squares = 0;
+  std::size_t outside = 0;  // of bodies
   for (std::size_t k = 0; k < points.size(); ++k) {
     out.report.rays += double(rays[k]);
     out.report.most_rays = std::max(out.report.most_rays, rays[k]);
     if (out.inside[k] != 0) continue;
+    ++outside;
     if (out.error[k] > out.report.largest_error) {
       out.report.largest_error = out.error[k];
       out.report.largest_error_at = k;
     }
     squares += out.error[k] * out.error[k];
   }
-  out.report.ray_error = points.empty() ? 0 : std::sqrt(squares / double(points.size()));
+  out.report.ray_error = outside == 0 ? 0 : std::sqrt(squares / double(outside));
   return out;
 }
 

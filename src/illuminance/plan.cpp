@@ -31,7 +31,7 @@ constexpr float kBlack = 0;
 
 /// About so many lines.
 constexpr double kMostLines = 10;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// The smallest of 1, 2, 5 x 10^n that is `least` or more.
 double roundStep(double least) {
@@ -63,7 +63,7 @@ class Plan {
  public:
   Plan(const MeasuringPoints& points, const MeasuringPoints::Grid& grid,
        const PointLightValues& light, std::size_t first)
-      : grid_(grid), values_(grid_.columns * grid_.rows, kNone) {
+      : grid_(grid), values_(grid_.columns * grid_.rows, kNoValue) {
     bodies_.assign(values_.size(), 0);
     for (std::size_t k = 0; k < points.size(); ++k) {
       if (light.inside[first + k] != 0) {
@@ -135,7 +135,7 @@ class Plan {
 
 /// Linear between points that have values; NaN in cells without one.
 double Plan::valueAt(int x, int y) const {
-  if (std::isnan(values_[cellAt(x, y)])) return kNone;
+  if (std::isnan(values_[cellAt(x, y)])) return kNoValue;
   const double column = (x + 0.5) / cell_u_ - 0.5;
   const double row = (height_ - y - 0.5) / cell_v_ - 0.5;
   const double left = std::floor(column);

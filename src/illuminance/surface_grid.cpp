@@ -1,4 +1,4 @@
-// A grid over a planar surface of a scene.
+// Grids over planar surfaces of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +19,9 @@ namespace {
 /// measured rooms are bent by half a percent. What is bent by more than kBent is told.
 constexpr double kFlat = 0.01;
 constexpr double kBent = 1e-5;
+/// Faces that are turned both ways are a board's two sides if the smaller side is more than this
+/// share of the larger one. Else they are a sheet, of which some face the wrong way.
+constexpr double kBoard = 0.5;
 /// A rectangle along other edges has to be smaller by this, so that squares keep to the axes.
 constexpr double kSmaller = 1 - 1e-6;
 
@@ -50,11 +53,13 @@ struct SurfacePlane {
   Vec3 normal{0.0};  ///< unit
   double front = 0;  ///< dot(normal, x) of the foremost corner, ...
   double back = 0;   ///< ... and of the one furthest behind
-  bool isFlat(double size) const { return front - back <= kFlat * size; }
+  double size = 0;   ///< the distance of the corner furthest from the first one
+  bool isFlat() const { return front - back <= kFlat * size; }
+  SurfacePlane turned() const { return {-normal, -back, -front, size}; }
 };
 
-/// None if they are in several planes.
-std::optional<SurfacePlane> planeOf(const Scene& scene, const Faces& faces) {
+/// Of one or more faces.
+SurfacePlane meanPlane(const Scene& scene, const Faces& faces) {
   const Vec3 largest = *std::ranges::max_element(
       faces.area, {}, [](const Vec3& area) { return glm::dot(area, area); });
   Vec3 sum(0.0);
@@ -64,40 +69,32 @@ std::optional<SurfacePlane> planeOf(const Scene& scene, const Faces& faces) {
   plane.front = -std::numeric_limits<double>::infinity();
   plane.back = -plane.front;
   const Vec3 origin = scene.vertices[scene.face(faces.number[0])[0]];
-  double size = 0;
   for (const std::size_t f : faces.number) {
     for (const Index corner : scene.face(f)) {
       const Vec3& at = scene.vertices[corner];
-      size = std::max(size, glm::distance(at, origin));
+      plane.size = std::max(plane.size, glm::distance(at, origin));
       plane.front = std::max(plane.front, glm::dot(plane.normal, at));
       plane.back = std::min(plane.back, glm::dot(plane.normal, at));
     }
   }
-  if (!plane.isFlat(size)) return std::nullopt;
   return plane;
 }
 
-/// Of faces that are turned both ways, those that face as `normal` does, or the other way.
-Faces facing(const Faces& faces, const Vec3& normal) {
+/// The faces that face as the unit `normal` does, but for an angle of the cosine `least` or more.
+Faces facing(const Faces& faces, const Vec3& normal, double least) {
   Faces out;
   for (std::size_t k = 0; k < faces.number.size(); ++k) {
-    if (!(glm::dot(faces.area[k], normal) > 0)) continue;
+    if (!(glm::dot(glm::normalize(faces.area[k]), normal) > least)) continue;
     out.number.push_back(faces.number[k]);
     out.area.push_back(faces.area[k]);
   }
   return out;
 }
 
-Faces facingUp(const Scene& scene, const Faces& faces) {
-  constexpr double kUpright = 0.999;
-  Faces out;
-  for (std::size_t k = 0; k < faces.number.size(); ++k) {
-    const double cosine = glm::dot(glm::normalize(faces.area[k]), upVector(scene.up));
-    if (cosine < kUpright) continue;
-    out.number.push_back(faces.number[k]);
-    out.area.push_back(faces.area[k]);
-  }
-  return out;
+double totalArea(const Faces& faces) {
+  double sum = 0;
+  for (const Vec3& area : faces.area) sum += glm::length(area);
+  return sum;
 }
 
 bool isTwoSided(const Scene& scene, const Faces& faces) {
@@ -177,14 +174,16 @@ PlaneArea turned(const PlaneArea& area, Up up) {
   return best;
 }
 
-/// Whether a point is in a face's outline, by the crossings of a ray to the right. Of faces side by
-/// side one has a point on their border.
+/// Whether a point is in a face's outline, by the crossings of a ray to the right. Of two faces on
+/// either side of an edge just one has a point on it: both have the same crossing, to the last bit,
+/// since it is computed from the lower end up.
 bool holds(const std::vector<Vec2>& outline, const Vec2& p) {
   bool inside = false;
   for (std::size_t k = 0, before = outline.size() - 1; k < outline.size(); before = k++) {
-    const Vec2& a = outline[k];
-    const Vec2& b = outline[before];
+    Vec2 a = outline[k];
+    Vec2 b = outline[before];
     if ((a.y > p.y) == (b.y > p.y)) continue;
+    if (b.y < a.y) std::swap(a, b);
     if (p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x) inside = !inside;
   }
   return inside;
@@ -222,39 +221,92 @@ struct PlanarFaces {
   std::vector<Note> notes;
 };
 
-/// The faces that are meant.
-PlanarFaces planarFaces(const Scene& scene, const std::string& name) {
-  const std::vector<Index> surfaces = surfacesMeant(scene, name);
-  if (surfaces.empty()) throw InputError("grid: " + unknownNameText(scene, name));
+/// The faces of a body that face up.
+void takeTop(const Scene& scene, const std::string& name, PlanarFaces& planar) {
+  constexpr double kLevel = 0.999;
+  const std::size_t all = planar.faces.number.size();
+  planar.faces = facing(planar.faces, upVector(scene.up), kLevel);
+  if (!planar.faces.number.empty()) planar.plane = meanPlane(scene, planar.faces);
+  if (planar.faces.number.empty() || !planar.plane.isFlat()) {
+    throw InputError(fmt::format(
+        "grid: {} is not planar, nor are its faces that face up; name a planar surface, or give a "
+        "plane by three corners",
+        name));
+  }
+  planar.notes.push_back(
+      {Severity::info, fmt::format("grid: {} is not planar; its points stand over the {} of its {} "
+                                   "faces that face up",
+                                   name, planar.faces.number.size(), all)});
+}
+
+/// Of one-sided faces in one plane the side that is meant: the larger one of a sheet, the upper one
+/// of a thin board.
+void takeSide(const Scene& scene, const std::string& name, PlanarFaces& planar) {
+  // What is left out stands across: the edges of a board.
+  constexpr double kAcross = kFlat;
+  const Vec3 normal = planar.plane.normal;
+  Faces side = facing(planar.faces, normal, kAcross);
+  Faces other = facing(planar.faces, -normal, kAcross);
+  if (totalArea(other) > totalArea(side)) std::swap(side, other);
+  const std::size_t turned_away = other.number.size();
+  const std::size_t all = planar.faces.number.size();
+  const double up = glm::dot(normal, upVector(scene.up));
+  if (totalArea(other) <= kBoard * totalArea(side)) {
+    if (turned_away > 0) {
+      planar.notes.push_back(
+          {Severity::info,
+           fmt::format("grid: {} of the {} faces of {} face{} the other way and {} left out",
+                       turned_away, all, name, turned_away == 1 ? "s" : "",
+                       turned_away == 1 ? "is" : "are")});
+    }
+  } else if (std::abs(up) > kFlat) {
+    if (glm::dot(side.area[0], upVector(scene.up)) < 0) std::swap(side, other);
+    planar.notes.push_back(
+        {Severity::info, fmt::format("grid: {} is a thin board; its points stand over the {} of "
+                                     "its {} faces that face up",
+                                     name, side.number.size(), all)});
+  } else {
+    throw InputError(fmt::format(
+        "grid: {} is a thin board, and neither of its sides faces up; name a surface that is one "
+        "side, or give a plane by three corners",
+        name));
+  }
+  planar.faces = std::move(side);
+  planar.plane = meanPlane(scene, planar.faces);
+}
+
+/// Of the surfaces that `name` stands for, the faces that are meant.
+PlanarFaces planarFaces(const Scene& scene, const std::string& name,
+                        const std::vector<Index>& surfaces) {
   PlanarFaces out;
   out.faces = facesOf(scene, surfaces);
   if (out.faces.number.empty()) {
     throw InputError(
         fmt::format("grid: {} has no area; name another surface, or give a plane", name));
   }
-  std::optional<SurfacePlane> plane = planeOf(scene, out.faces);
-  if (!plane) {
-    const std::size_t all = out.faces.number.size();
-    out.faces = facingUp(scene, out.faces);
-    if (!out.faces.number.empty()) plane = planeOf(scene, out.faces);
-    if (!plane) {
-      throw InputError(fmt::format(
-          "grid: {} is not planar, nor are its faces that face up; name a planar surface, or give "
-          "a plane by three corners",
-          name));
-    }
-    out.notes.push_back(
-        {Severity::info, fmt::format("grid: {} is not planar; its points stand over the {} of its "
-                                     "{} faces that face up",
-                                     name, out.faces.number.size(), all)});
-  }
-  out.plane = *plane;
-  if (!isTwoSided(scene, out.faces)) {
-    out.faces = facing(out.faces, plane->normal);
-  } else if (glm::dot(plane->normal, upVector(scene.up)) < -kFlat) {
-    out.plane = {-plane->normal, -plane->back, -plane->front};
+  out.plane = meanPlane(scene, out.faces);
+  if (!out.plane.isFlat()) {
+    takeTop(scene, name, out);
+  } else if (!isTwoSided(scene, out.faces)) {
+    takeSide(scene, name, out);
+  } else if (glm::dot(out.plane.normal, upVector(scene.up)) < -kFlat) {
+    out.plane = out.plane.turned();
   }
   return out;
+}
+
+/// Whether surfaces are one sheet: in one plane, and all their faces face alike.
+bool isOneSheet(const Scene& scene, const std::vector<Index>& surfaces) {
+  const Faces faces = facesOf(scene, surfaces);
+  if (faces.number.empty()) return true;
+  const SurfacePlane plane = meanPlane(scene, faces);
+  return plane.isFlat() && facing(faces, plane.normal, 0).number.size() == faces.number.size();
+}
+
+std::vector<Index> surfacesOrRefuse(const Scene& scene, const std::string& name) {
+  std::vector<Index> surfaces = surfacesMeant(scene, name);
+  if (surfaces.empty()) throw InputError("grid: " + unknownNameText(scene, name));
+  return surfaces;
 }
 
 /// Notes how far a surface is off its plane, if that is more than rounding of files.
@@ -267,15 +319,12 @@ void noteBend(const std::string& name, const Vec2& sides, PlanarFaces& planar) {
                    bend)});
 }
 
-}  // namespace
-
-MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, double height,
-                                  std::optional<double> spacing) {
+MeasuringPoints pointsOver(const Scene& scene, const std::string& name,
+                           const std::vector<Index>& surfaces, double height,
+                           std::optional<double> spacing) {
   if (!std::isfinite(height)) throw InputError("grid: the height is no finite number of metres");
-  PlanarFaces planar = planarFaces(scene, name);
-  if (height < 0) {
-    planar.plane = {-planar.plane.normal, -planar.plane.back, -planar.plane.front};
-  }
+  PlanarFaces planar = planarFaces(scene, name, surfaces);
+  if (height < 0) planar.plane = planar.plane.turned();
   const Vec3 normal = planar.plane.normal;
   const Vec3 corner = scene.vertices[scene.face(planar.faces.number[0])[0]];
   const Vec3 origin = corner + (planar.plane.front - glm::dot(normal, corner)) * normal;
@@ -326,6 +375,32 @@ MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, d
   }
   out.normal.assign(out.at.size(), withoutMinusZero(normal));
   return out;
+}
+
+}  // namespace
+
+MeasuringPoints pointsOverSurface(const Scene& scene, const std::string& name, double height,
+                                  std::optional<double> spacing) {
+  return pointsOver(scene, name, surfacesOrRefuse(scene, name), height, spacing);
+}
+
+std::vector<MeasuringPoints> pointsOverSurfaces(const Scene& scene, const std::string& name,
+                                                double height, std::optional<double> spacing) {
+  const std::vector<Index> surfaces = surfacesOrRefuse(scene, name);
+  if (!surfacesNamed(scene, name).empty() || isOneSheet(scene, surfaces)) {
+    return {pointsOver(scene, name, surfaces, height, spacing)};
+  }
+  std::vector<MeasuringPoints> sets;
+  for (const Index surface : surfaces) {
+    try {
+      sets.push_back(pointsOver(scene, scene.surfaces[surface].name, {surface}, height, spacing));
+    } catch (const InputError& error) {
+      if (surfaces.size() == 1) throw;
+      throw InputError(fmt::format("{} (it is one of the {} surfaces that {} means)", error.what(),
+                                   surfaces.size(), name));
+    }
+  }
+  return sets;
 }
 
 }  // namespace radiosity

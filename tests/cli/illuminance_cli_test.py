@@ -144,6 +144,39 @@ class Illuminance(CliTest):
         np.testing.assert_allclose([float(row["illuminance_lx"]) for row in again],
                                    [float(row["illuminance_lx"]) for row in rows[:16]], rtol=1e-9)
 
+    def test_a_pattern_has_a_grid_for_each_wall(self):
+        scene = self.write_room(4, 6, 3, 1, reflectance=.5, radiance=3)
+        report = self.report("illuminance", scene, "--grid", "[lfr][eri]*:0:1", "-o", "walls.csv", "-o", "walls.png")
+        found = [report[key] for key in ("illuminance", "illuminance_2", "illuminance_3")]
+        self.assertEqual([of["facing"] for of in found], [[1, 0, 0], [-1, 0, 0], [0, 0, -1]])
+        self.assertEqual([of["points"] for of in found], [18, 18, 12])
+        with open(self.folder / "walls.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["points"] for row in rows],
+                         ["left/wall"] * 18 + ["right/wall"] * 18 + ["front/wall"] * 12)
+
+    def test_too_many_plans_are_refused(self):
+        corners = [f"v {x} {.1 * k:g} {z}" for k in range(51) for x, z in ((k, 0), (k, 1), (k + .9, 1), (k + .9, 0))]
+        steps = [f"o step_{k}\nusemtl wall\nf {' '.join(str(4 * k + n) for n in (1, 2, 3, 4))}" for k in range(51)]
+        self.write("room.mtl", materials(.5))
+        self.write("stairs.obj", "\n".join(["mtllib room.mtl", *corners, *steps]) + "\n")
+        words = ["stairs.obj", "--light", "sun,1000lx,toward=0,1,0", "--grid", "step*:0:.9"]
+        self.refuse("illuminance", *words, "-o", "plans.png", words=["plans.png: there are 51 grids", "50 plans"])
+        self.assertEqual(len(self.measure(*words)), 51)
+
+    def test_direct_light_by_rays_says_that_it_is_off(self):
+        """A plate hides a part of a wide sun, which is 64 rays; nothing else sends light."""
+        self.write("room.mtl", materials(0))
+        self.write("plate.obj", "mtllib room.mtl\nusemtl wall\nv 0 0 0\nv 0 0 4\nv 6 0 4\nv 6 0 0\nv 2 2 1\nv 2 2 3\n"
+                   "v 4 2 3\nv 4 2 1\no floor\nf 1 2 3 4\no plate\nf 5 6 7 8\n")
+        words = ["plate.obj", "--light", "sun,1000lx,toward=.5,1,.3,diameter=10", "--two-sided", "plate", "--grid",
+                 "floor:.5:.25"]
+        found = self.run_program("illuminance", *words)
+        self.assertIn("at some points direct or indirect light took all rays that it may, and the standard error is "
+                      "above 1 %", found.out)
+        # Its first rays of indirect light find nothing.
+        self.assertEqual(self.report("illuminance", *words)["measuring"]["most_rays"], 1024)
+
     def test_a_point_in_a_body_is_left_out(self):
         scene = self.write_room(4, 4, 3, 1, reflectance=.5, radiance=3)
         box = [(x, y, z) for y in (0, .9) for x, z in ((0, 0), (1, 0), (1, 1), (0, 1))]

@@ -247,6 +247,10 @@ TEST(LightAtPoints, APointInABodySaysSo) {
   const PointLightValues light =
       room.at({{1.5, 1.5, 0.8}, {1.5, 1.5, 1.2}, {0.5, 0.5, 0}}, {0, 0, 1});
   EXPECT_EQ(light.inside, (std::vector<std::uint8_t>{1, 0, 0}));
+  // It has no part in the mean error of the others.
+  EXPECT_GT(light.report.ray_error, 0);
+  EXPECT_NEAR(light.report.ray_error, std::hypot(light.error[1], light.error[2]) / std::sqrt(2.0),
+              1e-12);
 }
 
 TEST(LightAtPoints, ThreadsAndCompanyChangeNothing) {

@@ -1,9 +1,11 @@
 // Grids over surfaces and planes, points from tables, and plans.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <glm/geometric.hpp>
 
 #include "base/srgb.h"
@@ -126,6 +128,114 @@ TEST(MeasuringGrid, OfABoxTheTopIsMeant) {
   ASSERT_EQ(points.notes.size(), 1U);
 }
 
+TEST(MeasuringGrid, OfAThinBoardTheUpperSideIsMeant) {
+  // A table top 2 cm thick, whose bottom comes first in the file; level and tilted.
+  for (const double tilt : {0.0, 0.3}) {
+    SceneBuilder builder;
+    builder.box(builder.surface("top"), {0, 0, 0.7}, {2, 1, 0.72});
+    const Vec3 axis(1, 0, 0);
+    for (Vec3& p : builder.scene().vertices) p = test::rotated(p, axis, tilt);
+    builder.scene().up = Up::z;
+    const Vec3 normal = test::rotated({0, 0, 1}, axis, tilt);
+    const MeasuringPoints points = pointsOverSurface(builder.scene(), "top", 0.1, 0.5);
+    EXPECT_EQ(points.size(), 8U);
+    EXPECT_NEAR(glm::distance(points.normal[0], normal), 0, 1e-12);
+    for (const Vec3& p : points.at) EXPECT_NEAR(glm::dot(p, normal), 0.82, 1e-12);
+    ASSERT_EQ(points.notes.size(), 1U);
+    EXPECT_EQ(points.notes[0].text,
+              "grid: top is a thin board; its points stand over the 1 of its 6 faces that face up");
+  }
+}
+
+TEST(MeasuringGrid, AnUprightBoardIsAskedForItsSide) {
+  SceneBuilder builder;
+  builder.box(builder.surface("screen"), {0, 0, 0}, {2, 0.01, 1.5});
+  builder.scene().up = Up::z;
+  EXPECT_EQ(errorOf([&] { pointsOverSurface(builder.scene(), "screen"); }),
+            "grid: screen is a thin board, and neither of its sides faces up; name a surface that "
+            "is one side, or give a plane by three corners");
+}
+
+TEST(MeasuringGrid, AFaceThatIsTurnedWronglyIsToldAndLeftOut) {
+  // A ceiling, of which a tile in a corner faces up.
+  SceneBuilder builder;
+  const Index ceiling = builder.surface("ceiling");
+  builder.level(ceiling, 0, 0, 1, 1, 3);
+  builder.level(ceiling, 0, 1, 1, 3, 3, false);
+  builder.level(ceiling, 1, 0, 4, 3, 3, false);
+  builder.scene().up = Up::z;
+  const MeasuringPoints points = pointsOverSurface(builder.scene(), "ceiling", 0, 0.5);
+  EXPECT_EQ(points.size(), 48U - 4U);
+  EXPECT_EQ(points.normal[0], Vec3(0, 0, -1));
+  ASSERT_EQ(points.notes.size(), 1U);
+  EXPECT_EQ(points.notes[0].text,
+            "grid: 1 of the 3 faces of ceiling faces the other way and is left out");
+}
+
+TEST(MeasuringGrid, NoPointIsLostBetweenTriangles) {
+  // Rectangles of two triangles, as they stand and turned: many points are on their diagonals.
+  const Vec3 axis = glm::normalize(Vec3(1, 2, 3));
+  int lost = 0;
+  for (int width = 5; width <= 80; ++width) {
+    for (int depth = 5; depth <= width; depth += 3) {
+      for (const double turn : {0.0, 0.7}) {
+        const double x = 0.1 * width;
+        const double y = 0.1 * depth;
+        std::array<Vec3, 4> corners = {Vec3(0), {x, 0, 0}, {x, y, 0}, {0, y, 0}};
+        for (Vec3& p : corners) p = test::rotated(p, axis, turn);
+        SceneBuilder builder;
+        const Index floor = builder.surface("floor");
+        builder.face(floor, {corners[0], corners[1], corners[2]});
+        builder.face(floor, {corners[2], corners[3], corners[0]});
+        builder.scene().up = Up::z;
+        const MeasuringPoints points = pointsOverSurface(builder.scene(), "floor");
+        lost += int(points.grid->columns * points.grid->rows - points.size());
+      }
+    }
+  }
+  EXPECT_EQ(lost, 0);
+}
+
+TEST(MeasuringGrid, APatternHasAGridForEachSurface) {
+  SceneBuilder builder;
+  builder.face(builder.surface("wall_1"), {{0, 0, 0}, {4, 0, 0}, {4, 0, 3}, {0, 0, 3}});
+  builder.face(builder.surface("wall_2"), {{0, 0, 0}, {0, 0, 3}, {0, 2, 3}, {0, 2, 0}});
+  const Index tile = builder.material("tile");
+  builder.level(builder.surfaceOf("floor_1", tile), 0, 0, 2, 2, 0);
+  builder.level(builder.surfaceOf("floor_2", tile), 2, 0, 4, 2, 0);
+  // A corridor so narrow that its walls are within a percent of its length.
+  builder.face(builder.surface("side_1"), {{0, 0, 0}, {99, 0, 0}, {99, 0, 3}, {0, 0, 3}});
+  builder.face(builder.surface("side_2"), {{0, 0.9, 0}, {0, 0.9, 3}, {99, 0.9, 3}, {99, 0.9, 0}});
+  Scene& scene = builder.scene();
+  scene.up = Up::z;
+  const std::vector<MeasuringPoints> walls = pointsOverSurfaces(scene, "wall*", 0.1, 1);
+  ASSERT_EQ(walls.size(), 2U);
+  EXPECT_EQ(walls[0].name, "wall_1/wall_1 + 0.1 m");
+  EXPECT_EQ(walls[0].size(), 12U);
+  EXPECT_EQ(walls[0].normal[0], Vec3(0, -1, 0));
+  EXPECT_EQ(walls[1].size(), 6U);
+  EXPECT_EQ(walls[1].normal[0], Vec3(-1, 0, 0));
+  // What is in one plane, and what has that name itself, stays one.
+  const std::vector<MeasuringPoints> floor = pointsOverSurfaces(scene, "floor*", 0, 1);
+  ASSERT_EQ(floor.size(), 1U);
+  EXPECT_EQ(floor[0].name, "floor*");
+  EXPECT_EQ(floor[0].size(), 8U);
+  EXPECT_EQ(pointsOverSurfaces(scene, "tile", 0, 1).size(), 1U);
+  EXPECT_EQ(pointsOverSurfaces(scene, "side*", 0, 1).size(), 2U);
+
+  const Index lamp = builder.surface("wall_lamp");
+  builder.box(lamp, {1, 0, 2}, {1.2, 0.1, 2.2});
+  builder.level(lamp, 1, 0, 1.2, 0.1, 3);
+  const auto over = [&](const std::string& name) {
+    return errorOf([&] { pointsOverSurfaces(scene, name); });
+  };
+  EXPECT_EQ(over("wall*"),
+            "grid: wall_lamp/wall_lamp is not planar, nor are its faces that face up; name a "
+            "planar surface, or give a plane by three corners (it is one of the 3 surfaces that "
+            "wall* means)");
+  EXPECT_NE(over("roof*").find("no surface, material or object matches roof*"), std::string::npos);
+}
+
 TEST(MeasuringGrid, WhatIsNoPlaneIsRefused) {
   SceneBuilder builder;
   const Index stairs = builder.surface("stairs");
@@ -175,7 +285,8 @@ TEST(MeasuringGrid, PointsAreReadWithAndWithoutAHeader) {
   EXPECT_NE(error("x,y,z,nx\n1,2,3,4\n").find(":1: nx, ny and nz are not all there"),
             std::string::npos);
   EXPECT_NE(error("1,2,3,0,0,0\n").find(":1: the normal is 0,0,0"), std::string::npos);
-  EXPECT_NE(error("1,2,3\n4,5\n").find(":2: 2 fields"), std::string::npos);
+  EXPECT_NE(error("1,2,3\n4,5\n").find(":2: 2 fields, and the first line has 3"),
+            std::string::npos);
   std::filesystem::remove(path);
 }
 
