@@ -18,7 +18,7 @@ constexpr int kBalanceSteps = 20;
 constexpr double kProgress = 0.8;
 /// What a patch counts for is within this and its inverse, and rests on so many hits: one that
 /// hardly any row has hit stays about as it is.
-constexpr double kMostCounts = 1.5;
+constexpr double kMostCounts = 2;
 constexpr double kCredibleHits = 16;
 /// A row that falls below this share of its sum has fits that what patches count for upsets.
 constexpr double kSound = 0.5;
