@@ -236,11 +236,12 @@ struct LitMesh {
 /// (`v x y z r g b`). Errors: InputError for a file without colours (with the cure), a damaged one.
 LitMesh readLitMesh(const std::string& path);
 
-/// Writes light at points: a header with units in its names, then a line a point: its place, the way
-/// that it faces, its illuminance and what it is made of, lx; that of a cylinder, of the six faces of
-/// a small cube and of half cylinders that face the four sides, lx; irradiance a band, W/m^2, all,
-/// direct and indirect; the standard error over all light; 1 where the point stands in a body; the
-/// name of its set. `light`: of all sets in turn. Errors: as the others, and illuminanceOf().
+/// Writes light at points: a header with units in its names, then a line a point: its place, the
+/// way that it faces, its illuminance and what it is made of, lx; that of a cylinder, of the six
+/// faces of a small cube and of half cylinders that face the four sides, lx; irradiance a band,
+/// W/m^2, all, direct and indirect; the standard error over all light; 1 where the point stands in
+/// a body; the name of its set. `light`: of all sets in turn. Errors: as the others, and
+/// illuminanceOf().
 void writeIlluminance(const std::string& path, std::span<const MeasuringPoints> sets,
                       const PointLightValues& light);
 
