@@ -146,6 +146,7 @@ TEST(Cut, GivesNoPatchMoreThanShines) {
   const PatchMesh mesh = pittedPlain(45);
   const FormFactors f = test::computed(mesh, byCuts(0.02));
   std::vector<double> light;
+  light.reserve(mesh.size());
   const Vec3 sun = glm::normalize(Vec3(1, 0.4, 0.2));
   for (const Vec3& normal : mesh.normal) light.push_back(std::max(0.0, glm::dot(sun, normal)));
   const double most = std::ranges::max(light);
