@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/made.h"
 #include "base/processor_clock.h"
 #include "formfactor/known_entries.h"
 #include "formfactor/rays/ray_model.h"
@@ -56,7 +57,7 @@ struct EmitterRows::Room {
 KnownRows EmitterRows::compute(Progress& progress) const {
   const Stopwatch watch;
   std::vector<KnownRow> computed =
-      areExact() ? exact_->compute(progress) : by_shadows_->compute(progress);
+      areExact() ? made(exact_).compute(progress) : made(by_shadows_).compute(progress);
   return {std::move(computed), areExact(), seconds_ + watch.seconds()};
 }
 
@@ -70,7 +71,7 @@ std::unique_ptr<const EmitterRows> EmitterRows::planned(const PatchMesh& mesh,
   const Stopwatch watch;
   auto rows = std::make_unique<EmitterRows>();
   if (!of_unknowns && mesh.clusters) rows->patches_.emplace(mesh).clusters.reset();
-  const Room room{rows->patches_ ? *rows->patches_ : mesh, options,
+  const Room room{rows->patches_ ? made(rows->patches_) : mesh, options,
                   wantedRows(mesh, options.exact_rows, of_unknowns), *most, plan};
   const bool fits = rows->planExact(room, progress) || rows->planShadows(room, progress);
   rows->seconds_ = watch.seconds();
