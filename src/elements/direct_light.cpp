@@ -415,19 +415,26 @@ bool EmitterLight::onlySomeArrive(const Looks& looks) {
   return some && !all;
 }
 
+/// Finds what there is of emitters, and the first looks at it. False: there is nothing.
+bool EmitterLight::lookFirst(const SurfacePoint& point, const Lights* lights, std::size_t bands,
+                             Unblocked& light, Looks& looks) const {
+  light.shares.clear();
+  light.whole.assign(bands, 0.0);
+  light.sum = 0;
+  sumUnblocked(point, lights, light);
+  looks.count = 0;
+  if (!(light.sum > 0)) return false;
+  look(point, light, aims_, kLooks, looks);
+  return true;
+}
+
 /// Most points see all looks arrive or none; those in a penumbra take more.
 double EmitterLight::byRays(const SurfacePoint& point, const Lights* lights,
                             std::span<double> out) const {
   ++by_rays_;
   thread_local Unblocked light;
   thread_local Looks looks;
-  light.shares.clear();
-  light.whole.assign(out.size(), 0.0);
-  light.sum = 0;
-  sumUnblocked(point, lights, light);
-  if (!(light.sum > 0)) return 0;
-  looks.count = 0;
-  look(point, light, aims_, kLooks, looks);
+  if (!lookFirst(point, lights, out.size(), light, looks)) return 0;
   if (onlySomeArrive(looks)) look(point, light, aims_, kMoreLooks, looks);
   return addSeen(light, looks, out);
 }
@@ -441,13 +448,7 @@ double EmitterLight::emittedWithin(const SurfacePoint& point, double tolerance,
                                    std::span<double> out) const {
   thread_local Unblocked light;
   thread_local Looks looks;
-  light.shares.clear();
-  light.whole.assign(out.size(), 0.0);
-  light.sum = 0;
-  sumUnblocked(point, nullptr, light);
-  if (!(light.sum > 0)) return 0;
-  looks.count = 0;
-  look(point, light, aims_, kLooks, looks);
+  if (!lookFirst(point, nullptr, out.size(), light, looks)) return 0;
   if (!onlySomeArrive(looks)) return addSeen(light, looks, out);
   return finely(point, light, tolerance, out);
 }

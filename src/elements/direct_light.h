@@ -73,6 +73,8 @@ class EmitterLight : public FieldLight {
   double clipped(const SurfacePoint& point, const Lights& lights, std::span<double> out) const;
   void sumUnblocked(const SurfacePoint& point, const Lights* lights, Unblocked& light) const;
   using Aims = std::vector<std::array<float, 3>>;  ///< of rays, in [0, 1)
+  bool lookFirst(const SurfacePoint& point, const Lights* lights, std::size_t bands,
+                 Unblocked& light, Looks& looks) const;
   void look(const SurfacePoint& point, const Unblocked& light, const Aims& aims, std::size_t count,
             Looks& looks) const;
   double finely(const SurfacePoint& point, const Unblocked& light, double tolerance,

@@ -101,12 +101,13 @@ bool EmitterRows::planExact(const Room& room, Progress& progress) {
 }
 
 bool EmitterRows::planShadows(const Room& room, Progress& progress) {
+  const std::size_t pairs = room.wanted.size() * room.mesh.unknowns();
+  if (pairs > kMostShadowPairs) return false;
   progress.begin("preparing", 1);
   const ShadowRows& rows = by_shadows_.emplace(room.mesh, room.wanted, room.options.seed);
   progress.end();
   const double most = std::max(kFewShadows, kShadowsARay * room.most.work / kExactWorkARay);
-  const std::size_t pairs = room.wanted.size() * room.mesh.unknowns();
-  if (pairs > kMostShadowPairs || rows.rays() > most) return false;
+  if (rows.rays() > most) return false;
   const std::size_t bytes = std::max(room.plan.bytes, room.most.bytes + rows.bytes()) +
                             KnownEntries::bytes(double(pairs));
   if (room.options.memory_limit > 0 && bytes > room.options.memory_limit) return false;
