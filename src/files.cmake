@@ -43,7 +43,7 @@ add_room(results HEADERS results names vtk KNOWS gather heat illuminance lightma
 add_room(tables HEADERS tables matrix_files KNOWS results USES nlohmann_json::nlohmann_json)
 add_room(compare HEADERS compare KNOWS results)
 add_room(pipeline HEADERS pipeline KNOWS results elements)
-add_room(page HEADERS page KNOWS pipeline USES nlohmann_json::nlohmann_json ZLIB::ZLIB)
+add_room(page HEADERS page KNOWS pipeline tables USES nlohmann_json::nlohmann_json ZLIB::ZLIB)
 
 # The browser's half of a page is bundled by node and stands in the library as it is. Without node and
 # npm all else is built, and `radiosity view` says what it lacks.

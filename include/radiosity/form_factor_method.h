@@ -32,9 +32,9 @@ struct MethodTraits {
   std::array<std::string_view, 8> options{};
   double tolerance = 0;   ///< FormFactorOptions::tolerance by default; 0: it has none
   bool symmetric = true;  ///< A_i F_ij = A_j F_ji, without FormFactorOptions::symmetrize
-  /// Rows are of unknowns, made by process 0 out of what all processes count. Others make rows of
-  /// patches, each in one process, and sum them over clusters.
-  bool counts_unknowns = false;
+  /// Rows are made by process 0 out of what all processes count. Of others each is made in one
+  /// process.
+  bool counts_rays = false;
   /// Whether it gives F_ij pair by pair (ExchangeMatrix).
   bool stores_pairs = true;
   /// The share of its light that an energy account may be off, and the cure if it is off by more.
@@ -72,7 +72,7 @@ inline constexpr std::array kMethods{
                  .summary = "area to area, by counting rays",
                  .options = {"tolerance", "closure", "seed"},
                  .tolerance = 1e-2,
-                 .counts_unknowns = true,
+                 .counts_rays = true,
                  .imbalance = 0.005,
                  .cure =
                      [] {
@@ -85,7 +85,7 @@ inline constexpr std::array kMethods{
                  .options = {"tolerance", "seed"},
                  .tolerance = 2e-2,
                  .symmetric = false,
-                 .counts_unknowns = true,
+                 .counts_rays = true,
                  .stores_pairs = false,
                  .imbalance = 0.005,
                  .cure =

@@ -1,5 +1,4 @@
-// Form factors: F_ij is the fraction of the flux leaving patch i that reaches patch j. If patches
-// share unknowns (PatchMesh::clusters), i and j are clusters.
+// Form factors: F_ij is the fraction of the flux leaving patch i that reaches patch j.
 #pragma once
 
 #include <algorithm>
@@ -75,15 +74,14 @@ struct FormFactorOptions {
   /// Hemicube: pairs nearer than two patch sizes get the area-to-area value times the visible
   /// fraction from the item buffer.
   bool near_exact = false;
-  /// Rays, cut, hemicube: unknowns (patches, or clusters if there are any), ascending, whose
-  /// exchange with all others is exact: those that emit (emittingUnknowns()), since all other light
-  /// comes from them. In a hemicube's row what else was seen is scaled to the rest of 1. If exact
-  /// rows would take more than half as long as the others and more than some seconds, or have more
-  /// than a million pairs, they are by shadow rays, to 2% of what a patch sees of emitters; if
-  /// these would be many times as many as other rays, or there are more than ten million pairs,
-  /// they are left to the method. The report says which. Exact: what other unknowns get from these
-  /// is good to 5% itself where it is 1% of the mean or more, if they have a million pairs at most.
-  /// Used where knowsEmitters().
+  /// Rays, cut, hemicube: patches, ascending, whose exchange with all others is exact: those that
+  /// emit (emittingPatches()), since all other light comes from them. In a hemicube's row what else
+  /// was seen is scaled to the rest of 1. If exact rows would take more than half as long as the
+  /// others and more than some seconds, or have more than a million pairs, they are by shadow rays,
+  /// to 2% of what a patch sees of emitters; if these would be many times as many as other rays, or
+  /// there are more than ten million pairs, they are left to the method. The report says which.
+  /// Exact: what other patches get from these is good to 5% itself where it is 1% of the mean or
+  /// more, if they have a million pairs at most. Used where knowsEmitters().
   std::vector<Index> exact_rows;
   bool exact_emitters = true;    ///< false: exact_rows are estimated as all others
   std::size_t memory_limit = 0;  ///< bytes; 0: no limit
@@ -462,11 +460,10 @@ struct FormFactorReport {
 };
 
 /// The matrix and the three accounts of each row, which sum to 1: seen fronts (the row sum), seen
-/// backs and sky. N values each, 0 in the row of a degenerate patch. If patches share unknowns
-/// (PatchMesh::clusters), rows are those of clusters, PatchMesh::unknowns() of them. Exact: fronts
-/// and backs are as computed. The sky of an enclosed patch (Enclosures) is 0, and 1 - fronts -
-/// backs is the raw error of closure. That of others is 1 - fronts - backs, but never below 0:
-/// where rounding and the tolerance have more than 1, that is the row's error.
+/// backs and sky. N values each, 0 in the row of a degenerate patch. Exact: fronts and backs are as
+/// computed. The sky of an enclosed patch (Enclosures) is 0, and 1 - fronts - backs is the raw
+/// error of closure. That of others is 1 - fronts - backs, but never below 0: where rounding and
+/// the tolerance have more than 1, that is the row's error.
 struct FormFactors {
   std::shared_ptr<const ExchangeOperator> matrix;  ///< null: it was left out (readResults())
   std::vector<double> fronts;

@@ -232,8 +232,7 @@ HeatConditions readHeatConditions(std::span<const std::string> names,
 /// surface, for values out of range and for emissivities that are neither one nor one per band.
 void validate(const HeatConditions& conditions, const HeatOptions& options);
 
-/// The same for the patches of the mesh to which the factors belong. If they share unknowns
-/// (PatchMesh::clusters), a cluster has one temperature, and H is linear within it, as in solve().
+/// The same for the patches of the mesh to which the factors belong.
 HeatSolution solveHeat(const FormFactors& factors, const HeatConditions& conditions,
                        const PatchMesh& mesh, const HeatOptions& options, Progress& progress);
 

@@ -11,9 +11,10 @@
 
 namespace [[gnu::visibility("default")]] radiosity {
 
-/// The limits of a page: form factors are then up to 64 MB of codes, which a browser reads, keeps
-/// and solves.
-inline constexpr std::size_t kMostPageUnknowns = 8000;
+/// Form factors between so many patches are up to 64 MB of codes, which a browser reads, keeps and
+/// solves. Those of more are summed over this many nodes, clusters of patches.
+inline constexpr std::size_t kMostPageNodes = 8000;
+inline constexpr std::size_t kNodesOfMany = 2000;
 inline constexpr std::size_t kMostPagePatches = 100000;
 
 struct PageOptions {
@@ -31,11 +32,12 @@ struct FactorQuantisation {
   /// The largest sum_j |F_ij as decoded - F_ij| of a row i, including entries left out. An
   /// irradiance may be off by this share of the largest radiosity.
   double largest_row_error = 0;
-  /// Pairs with F_ij and F_ji both below 1e-9 / unknowns, which get code 0.
+  /// Pairs with F_ij and F_ji both below 1e-9 / their number, which get code 0.
   std::size_t left_out = 0;
 };
 
 struct PageReport {
+  std::size_t nodes = 0;  ///< that form factors are summed over; 0: they are between patches
   std::size_t pairs = 0;  ///< form factors kept: one a pair, diagonal included
   FactorQuantisation quantisation;
   std::size_t element_triangles = 0;  ///< of the lit mesh of elements; 0: none
@@ -47,7 +49,7 @@ struct PageReport {
 bool canWritePages();
 
 /// Errors: InputError that starts with `name`, with the numbers and the cure, if a page cannot hold
-/// that many unknowns or patches. Form factors are not needed yet.
+/// that many patches. Form factors are not needed yet.
 void requirePageFits(const std::string& name, const PatchMesh& mesh);
 
 /// Writes the page of the pipeline's solution, whole or not at all. `light`: solvedLight() or

@@ -59,21 +59,6 @@ struct Enclosures {
   bool closed = false;  ///< all patches are enclosed, and there are some
 };
 
-/// Clusters of patches that share one unknown, in a scene with more patches than were asked for:
-/// each patch is in one cluster, with others of its surface and side (face clusters: Willmott,
-/// Heckbert & Garland, "Face Cluster Radiosity", 1999). Visibility still goes by patches; form
-/// factors and the system to solve are between clusters.
-struct PatchClusters {
-  std::vector<Index> of_patch;     ///< N, each patch's cluster
-  std::vector<std::size_t> begin;  ///< K + 1, into patches
-  std::vector<Index> patches;      ///< cluster by cluster, ascending in each
-
-  std::size_t size() const { return begin.empty() ? 0 : begin.size() - 1; }
-  std::span<const Index> patchesOf(std::size_t cluster) const {
-    return {patches.data() + begin[cluster], begin[cluster + 1] - begin[cluster]};
-  }
-};
-
 /// N patches, structure of arrays, double precision. All fronts come first, then the backs of
 /// two-sided patches; a back has its own centroid, normal (flipped) and corners (reversed).
 struct PatchMesh {
@@ -99,15 +84,8 @@ struct PatchMesh {
   /// Enclosures of `polygons`. meshScene() finds them. A mesh from elsewhere may lack them; each
   /// user then finds them anew. Code that changes vertices or polygons by hand must reset them.
   std::optional<Enclosures> enclosures;
-  /// Absent: every patch is an unknown of its own.
-  std::optional<PatchClusters> clusters;
 
   std::size_t size() const { return area.size(); }
-  /// Rows of the form-factor matrix: clusters if there are any, else patches.
-  std::size_t unknowns() const { return clusters ? clusters->size() : size(); }
-  std::size_t unknownOf(std::size_t patch) const {
-    return clusters ? clusters->of_patch[patch] : patch;
-  }
   std::size_t frontCount() const;
   std::span<const Index> outline(std::size_t i) const {
     return {corners.data() + corner_offset[i], corner_offset[i + 1] - corner_offset[i]};
@@ -118,9 +96,8 @@ struct PatchMesh {
 inline constexpr double kMostPatches = 20e6;
 
 struct MeshOptions {
-  /// About how many unknowns (both sides counted once); 1 or more. If outlines alone take more
-  /// cells, cells of a polygon are joined; a polygon is at least one patch. If that is more than
-  /// 1.2 times as many, patches share unknowns (PatchMesh::clusters); a surface has at least one.
+  /// About how many (both sides counted once); 1 or more. If outlines alone take more cells, cells
+  /// of a polygon are joined; a polygon is at least one patch.
   std::size_t patches = 2000;
   double max_edge = 0;  ///< metres; longest patch edge; 0: derived from `patches`
   /// Coincidence, as a fraction of the scene's diagonal, 0 to 1e-2; but never more than 1e-4 (or
@@ -133,8 +110,8 @@ struct MeshOptions {
   /// A line an option (option_line.h).
   static void describe(auto& list, auto& o) {
     list({.name = "patches",
-          .help = "About how many patches; where a scene has more planar pieces than that, they "
-                  "share as many unknowns"},
+          .help = "How finely the scene is cut: about how many patches, but at least one for each "
+                  "planar piece"},
          o.patches, {.from = 1, .to = kMostPatches});
     list({.name = "max_edge",
           .value = "METRES",
@@ -181,14 +158,10 @@ struct MeshReport {
   std::size_t crossings = 0;    ///< faces_as_patches: pairs of faces that cross, not repaired
   double smallest_angle = 0;    ///< degrees, over all patches
   std::string smallest_angle_surface;
-  double longest_edge = 0;   ///< metres
-  std::size_t clusters = 0;  ///< unknowns that patches share; 0: each patch has its own
-  double widest_cone = 0;  ///< degrees; the largest angle of a patch's normal to its cluster's mean
+  double longest_edge = 0;  ///< metres
   std::vector<Note> notes;  ///< repairs, by name
 
   static void describe(auto& list, auto& r) {
-    list({"clusters", "clusters"}, r.clusters);
-    list({"widest_cone", "  normals off their mean by", "deg"}, r.widest_cone);
     list({"quads", "quads"}, r.quads);
     list({"triangles", "triangles"}, r.triangles);
     list({"polygons", "planar polygons"}, r.polygons);
@@ -255,8 +228,8 @@ struct PatchMaterials {
 /// area, and Scene::lights.
 PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh);
 
-/// The unknowns, ascending, with a patch that emits in some band. Errors as requireSizes().
-std::vector<Index> emittingUnknowns(const PatchMesh& mesh, const PatchMaterials& materials);
+/// The patches, ascending, that emit in some band. Errors as requireSizes().
+std::vector<Index> emittingPatches(const PatchMesh& mesh, const PatchMaterials& materials);
 
 /// Groups of patch corners that share one value in a smooth field. At every vertex a group holds
 /// corners whose patches bend less than `crease` degrees and are linked by such neighbours on the
@@ -278,8 +251,8 @@ struct CornerGroups {
 };
 CornerGroups cornerGroups(const PatchMesh& mesh, double crease);
 
-/// Identity of the geometry a form-factor matrix belongs to: vertices, patches, sides, clusters,
-/// surface names. Not reflectance or emission. 16 hex digits.
+/// Identity of the geometry a form-factor matrix belongs to: vertices, patches, sides, surface
+/// names. Not reflectance or emission. 16 hex digits.
 std::string geometryHash(const PatchMesh& mesh);
 
 }  // namespace radiosity

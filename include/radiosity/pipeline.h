@@ -110,9 +110,8 @@ struct PipelineOptions {
 enum class Quantity {
   radiosity,    ///< luminance of B, W/m^2; the sum of bands that are not three
   irradiance,   ///< the same of H
-  form_factor,  ///< F from one patch to each; if patches share unknowns, from its cluster to the
-                ///< cluster of each
-  row_sum       ///< sum of the row of each patch, or of its cluster: fronts seen
+  form_factor,  ///< F from one patch to each
+  row_sum       ///< sum of the row of each patch: fronts seen
 };
 struct ScalarField {
   std::vector<double> values;  ///< N

@@ -110,14 +110,12 @@ Results readResults(const std::string& path, bool with_factors = true,
 /// things are attributes, arrays are datasets with their unit as an attribute. Layout:
 ///   /              format, format_version, version (of the program)
 ///   /scene         as Scene: vertices, corners, surfaces/, materials/, cameras/, textures/, notes/
-///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/; if patches share
-///                  unknowns, clusters/of_patch: the row of /form_factors of each patch
+///   /mesh          as PatchMesh; key, geometry_hash, polygons/, report/
 ///   /form_factors  csr_matrix((data, indices, indptr), shape) of scipy: data f32 or f64, indices
 ///                  int32 increasing in a row, indptr int64; row_sum (of data), fronts, backs, sky,
 ///                  error (figures of the rows; exact method), area; order (of storage, of the
 ///                  patches) if A_i F_ij = A_j F_ji was stored once a pair; normal, centroid,
-///                  surface, surface_names (those of /mesh), or of_patch if rows are of clusters;
-///                  method, key, geometry_hash, report/
+///                  surface, surface_names (those of /mesh); method, key, geometry_hash, report/
 ///   /solution      radiosity, irradiance, reflectance, emission (N x bands), sky (an attribute of
 ///                  bands numbers; none: dark), summary/, key
 ///   /elements      bands, key, report/; roots/ as ElementRoots: patch, corner (R x 4), of_patch;

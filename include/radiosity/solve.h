@@ -180,12 +180,7 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const std::string> group_names = {}, std::span<const double> sky = {});
 
 /// The same with the materials, of any number of bands, and the surfaces of the mesh to which the
-/// factors belong. If its patches share unknowns (PatchMesh::clusters), a cluster has the mean
-/// reflectance and emission of its patches by area, and the system between clusters is solved: the
-/// summary, with residual, bound and energy, is of that system. B and H are still of patches,
-/// N * bands. Within a cluster H follows place and normal by a linear fit to rays, and keeps the
-/// cluster's mean; B = E + rho H with each patch's own E and rho, so that textures stay sharp.
-/// Errors also as PatchMaterials::requireSizes().
+/// factors belong. Errors also as PatchMaterials::requireSizes().
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress);
 

@@ -18,17 +18,17 @@ namespace [[gnu::visibility("default")]] radiosity {
 /// Form factors with a name for each row: between groups of surfaces, or between patches.
 struct NamedFactors {
   std::vector<std::string> names;  ///< N; if `numbered`, those of the surfaces, not unique
-  /// Rows are unknowns and go by their number from 0: patches, or the clusters that share unknowns.
+  /// Rows are patches and go by their number from 0.
   bool numbered = false;
   std::shared_ptr<const ExchangeMatrix> matrix;  ///< N x N, F[a, b] from a to b, and the areas
   std::vector<double> sky;                       ///< N, the share of a row that goes to the sky
   std::vector<double> backs;                     ///< N, the share that goes to black backs
-  /// N error figures, as FormFactors::error, of the row from a to the single unknowns: its 2-norm
-  /// is below the mean of the unknowns' figures by area (Minkowski's inequality), in as many rows
+  /// N error figures, as FormFactors::error, of the row from a to the single patches: its 2-norm
+  /// is below the mean of the patches' figures by area (Minkowski's inequality), in as many rows
   /// as theirs. Empty: the method has none.
   std::vector<double> error;
-  std::vector<std::size_t> members;  ///< N, the number of unknowns of a row
-  std::vector<Index> row_of;         ///< the row of each unknown
+  std::vector<std::size_t> members;  ///< N, the number of patches of a row
+  std::vector<Index> row_of;         ///< the row of each patch
   bool closed = false;               ///< no patch sees the sky
   std::string sky_name = "sky";      ///< of the receiver that is no surface
 
@@ -42,22 +42,21 @@ struct NamedFactors {
 };
 
 /// F[a, b] = sum over i in a, j in b of A_i F_ij / A_a, in double precision; sky and backs are
-/// means by area. A two-sided surface has both sides in one row. Patches that share unknowns are of
-/// one surface, so clusters are grouped as patches are. Takes one pass over the matrix, wherever it
-/// is. A group without area has a row of zeros. Errors: InputError if `groups` has another number
-/// of surfaces; Cancelled.
+/// means by area. A two-sided surface has both sides in one row. Takes one pass over the matrix,
+/// wherever it is. A group without area has a row of zeros. Errors: InputError if `groups` has
+/// another number of surfaces; Cancelled.
 NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
                             const SurfaceGroups& groups, Progress& progress);
 
 /// The same between about `count` nodes, clusters of patches of one surface and side that are near
-/// each other and face alike (mesh/clusters), of at least one a surface; unknowns if there are no
+/// each other and face alike (mesh/clusters), of at least one a surface; patches if there are no
 /// more. Named "SURFACE", or "SURFACE 1", "SURFACE 2", ... in the order of its first patches, with
 /// " back" at the end for the back of a two-sided surface. Throws Cancelled.
 NamedFactors factorsBetweenNodes(const PatchMesh& mesh, const FormFactors& factors,
                                  std::size_t count, Progress& progress);
 
 /// The rows of the matrix as they are. Errors: as pairsOf().
-NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors);
+NamedFactors factorsOfPatches(const PatchMesh& mesh, const FormFactors& factors);
 
 /// Of each row of `factors`: 1 - reflectance, the mean over its area and all bands.
 std::vector<double> emissivities(const NamedFactors& factors, const PatchMesh& mesh,

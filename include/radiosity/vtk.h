@@ -24,8 +24,8 @@ struct CellField {
 std::vector<CellField> materialFields(const PatchMaterials& materials);
 
 /// row_sum, backs and sky, the three accounts of a row; and error, its figure, if the method has
-/// one. Patches that share an unknown have its row.
-std::vector<CellField> factorFields(const PatchMesh& mesh, const FormFactors& factors);
+/// one.
+std::vector<CellField> factorFields(const FormFactors& factors);
 
 /// By band, W/m^2: radiosity B, irradiance H, and net_flux, the flux given off in excess of the
 /// flux absorbed, q = B - H = E - (1 - rho) H: above 0 for a lamp, below 0 for an absorbing
@@ -37,9 +37,9 @@ std::vector<CellField> heatFields(const HeatSolution& heat);
 
 /// VTK's XML PolyData (.vtp): polygon k is patch k, backs too (the front's corners in reverse);
 /// points in metres, 64 bits. Cell data: patch (its number, from 0), surface (its name), surface_id
-/// (into the field data surface_names), side (0 front, 1 back), unknown (the row of the matrix, if
-/// patches share them), area (m^2), then `fields`, each with its unit. Errors: InputError for a
-/// field of another size, without components, or with a name that exists already; as CheckedFile.
+/// (into the field data surface_names), side (0 front, 1 back), area (m^2), then `fields`,
+/// each with its unit. Errors: InputError for a field of another size, without components, or with
+/// a name that exists already; as CheckedFile.
 void writeVtp(const std::string& path, const PatchMesh& mesh, std::span<const CellField> fields);
 
 }  // namespace radiosity

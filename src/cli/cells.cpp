@@ -18,8 +18,7 @@ void writeCells(Session& session, Pipeline& pipeline, OutputSet& files, const Mi
     std::move(more.begin(), more.end(), std::back_inserter(fields));
     what += name;
   };
-  if (command != Command::mesh)
-    append(factorFields(mesh, pipeline.factors()), ", accounts of rows");
+  if (command != Command::mesh) append(factorFields(pipeline.factors()), ", accounts of rows");
   if (mix != nullptr) {
     append(lightFields(mix->solution), ", mixed light");
   } else if (command == Command::solve && !pipeline.solution().radiosity.empty()) {

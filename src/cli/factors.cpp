@@ -10,7 +10,7 @@ int runFactors(Session& session) {
   std::vector<std::string> surfaces;
   for (const Surface& surface : run.pipeline.scene().surfaces) surfaces.push_back(surface.name);
   checkTables(session, files, surfaces, 0);
-  checkTables(session, files, surfaces, run.pipeline.mesh().mesh.unknowns());
+  checkTables(session, files, surfaces, run.pipeline.mesh().mesh.size());
   run.pipeline.factors();
   saveResults(session, run.pipeline, files);
   writeTables(session, run.pipeline, files);

@@ -111,15 +111,12 @@ void PipelineReport::noteUnused(FormFactorMethod method) {
 
 void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& plan) {
   const FormFactorOptions& options = pipeline.options().factors;
-  const PatchMesh& mesh = made(pipeline.results().mesh).mesh;
-  const std::size_t patches = mesh.size();
+  const std::size_t patches = made(pipeline.results().mesh).mesh.size();
   const MethodTraits& method = traitsOf(plan.method);
   // On disk every entry has a column number of 4 bytes. In memory a dense row has none, and a
   // symmetric matrix has half of the entries.
   const std::size_t value = options.storedPrecision() == Precision::double_precision ? 8 : 4;
   const std::size_t disk = plan.matrix_bytes * (method.symmetric ? 2 : 1) * (value + 4) / value;
-  const std::string clusters =
-      mesh.clusters ? fmt::format(", for {} clusters", countText(mesh.unknowns())) : "";
   std::string what = plan.what;
   if (what.empty()) {
     what = fmt::format("{} between {}", method.word, plural(patches, "patch", "patches"));
@@ -128,7 +125,7 @@ void PipelineReport::planned(const Pipeline& pipeline, const FormFactorPlan& pla
   report_.line(
       "form factors",
       fmt::format(
-          "{}{}: about {}, memory about {}{}{}", what, clusters, durationText(plan.seconds),
+          "{}: about {}, memory about {}{}{}", what, durationText(plan.seconds),
           bytesText(plan.bytes),
           plan.scratch_bytes > 0 ? ", scratch file about " + bytesText(plan.scratch_bytes) : "",
           writes_results_ ? ", disk at most about " + bytesText(disk) : ""));

@@ -75,7 +75,7 @@ bool needsPairs(const Session& session) {
   // Tables of `factors` are for who wants single ones: rows that are cut have to be asked for.
   const bool lists = request.command == Command::factors &&
                      request.apply(FormFactorOptions()).method == FormFactorMethod::automatic;
-  return session.processes != nullptr || request.command == Command::view || lists ||
+  return session.processes != nullptr || lists ||
          std::ranges::any_of(parseOutputs(request), [&](const Output& output) {
            const bool sums = !request.between.empty() && request.between != "patches";
            return output.format == Format::matrix_market && !sums;
@@ -215,7 +215,7 @@ void writeStages(Session& session, Pipeline& pipeline, OutputSet& files) {
   if (files.has(Format::results)) writeResultsFile(session, pipeline, files);
   if (!files.has(Format::matrix_market)) return;
   pipeline.loadMatrix();
-  writeMatrix(session, factorsOfUnknowns(pipeline.mesh().mesh, pipeline.factors()), files);
+  writeMatrix(session, factorsOfPatches(pipeline.mesh().mesh, pipeline.factors()), files);
 }
 
 void writeMatrix(Session& session, const NamedFactors& factors, OutputSet& files) {

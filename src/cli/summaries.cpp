@@ -210,11 +210,10 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
   if (detail == Detail::brief) {
     const std::size_t others = mesh.size() - r.quads - r.triangles;
     report.line(
-        "", fmt::format("{} ({}, {}{}){} on {}; T-junctions {}; smallest angle {} deg",
+        "", fmt::format("{} ({}, {}{}) on {}; T-junctions {}; smallest angle {} deg",
                         plural(mesh.size(), "patch", "patches"), plural(r.quads, "quad", "quads"),
                         plural(r.triangles, "triangle", "triangles"),
                         others > 0 ? fmt::format(", {} of more corners", others) : "",
-                        r.clusters > 0 ? fmt::format(" in {} clusters", countText(r.clusters)) : "",
                         plural(r.polygons, "polygon", "polygons"), r.t_junctions,
                         numberText(r.smallest_angle, 3)));
   }
@@ -222,7 +221,6 @@ void summarizeMesh(Report& report, const MeshResult& result, Detail detail) {
     const Section section(report, detail, "mesh", "Mesh");
     report.count("patches", "patches", mesh.size());
     report.count("fronts", "of them fronts", mesh.frontCount());
-    report.count("unknowns", "unknowns", mesh.unknowns());
     FieldLines lines(report);
     lines.after("polygons", [&] { report.number("area_m2", "area of all patches", area, "m^2"); });
     r.describe(lines, r);

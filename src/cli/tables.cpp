@@ -75,7 +75,7 @@ class Tables {
   NamedFactors make(const std::string& between) {
     const PatchMesh& mesh = pipeline_.mesh().mesh;
     const FormFactors& factors = pipeline_.factors();
-    if (between == "patches") return factorsOfUnknowns(mesh, factors);
+    if (between == "patches") return factorsOfPatches(mesh, factors);
     if (const std::size_t nodes = nodesOf(between); nodes > 0) {
       return factorsBetweenNodes(mesh, factors, nodes, session_.progress);
     }
@@ -161,9 +161,10 @@ void writeTable(Session& session, Tables& tables, Format format, OutputSet& file
   const TableLayout layout = layoutOf(session.request);
   Progress& progress = session.progress;
   const bool are_nodes = nodesOf(session.request.between) > 0;
-  const std::string row = factors.numbered ? "unknown" : are_nodes ? "node" : "surface";
+  const std::string row = factors.numbered ? "patch" : are_nodes ? "node" : "surface";
   const std::string what =
-      fmt::format("form factors between {}", plural(factors.size(), row, row + "s"));
+      fmt::format("form factors between {}",
+                  plural(factors.size(), row, row + (factors.numbered ? "es" : "s")));
   const auto write = [&](const std::string& text, auto&& writer) {
     files.write(format, what + text, writer);
   };
@@ -229,14 +230,14 @@ void checkTableOptions(const Request& request, const OutputSet& files) {
 }
 
 void checkTables(const Session& session, const OutputSet& files,
-                 std::span<const std::string> surfaces, std::size_t unknowns) {
+                 std::span<const std::string> surfaces, std::size_t patches) {
   const Request& request = session.request;
   const auto rowsOf = [&](const std::string& between) {
     NamedFactors rows;
     rows.numbered = between == "patches";
     rows.sky_name = request.sky_name;
     if (rows.numbered) {
-      rows.names.resize(unknowns);
+      rows.names.resize(patches);
     } else if (nodesOf(between) == 0) {
       rows.names = groupSurfaces(surfaces, groupsOf(request, between)).names;
     }

@@ -13,9 +13,9 @@ namespace radiosity::cli {
 void checkTableOptions(const Request& request, const OutputSet& files);
 
 /// Throws InputError for groups that do not fit the surfaces, and for names and numbers of rows
-/// that a table would refuse, before form factors are computed. `unknowns`: 0 if not known yet.
+/// that a table would refuse, before form factors are computed. `patches`: 0 if not known yet.
 void checkTables(const Session& session, const OutputSet& files,
-                 std::span<const std::string> surfaces, std::size_t unknowns);
+                 std::span<const std::string> surfaces, std::size_t patches);
 
 /// Prints the table of --between or --group and writes those among `files`, MatrixMarket too.
 void writeTables(Session& session, Pipeline& pipeline, OutputSet& files);

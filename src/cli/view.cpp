@@ -43,7 +43,7 @@ std::string defaultPage(const std::string& input) {
 
 /// Refuses a method with two estimates for each pair, before any work is done.
 void requireOneEstimate(const Request& request, const FormFactorOptions& options) {
-  if (options.givesSymmetric()) return;
+  if (options.givesSymmetric() || !traitsOf(options.method).stores_pairs) return;
   const MethodTraits& method = traitsOf(options.method);
   throw InputError(fmt::format(
       "{}: a page keeps one form factor a pair, and the method {} gives two estimates of each; "
@@ -56,6 +56,7 @@ void summarizePage(Report& report, const Picture& picture, double ev, const Page
   report.section("page", "Page");
   report.text("camera", "camera", picture.camera_from);
   report.number("exposure_ev", "exposure", ev, "EV");
+  if (page.nodes > 0) report.count("nodes", "nodes that patches are summed to", page.nodes);
   report.count("form_factors", "form factors, one a pair", page.pairs);
   report.number("largest_relative_error", "their error by 16 bits, at most",
                 q.largest_relative_error);

@@ -149,7 +149,7 @@ void IndirectSources::trace(Progress& progress) {
   });
   progress.check();
   progress.end();
-  if (!scene_.mesh.clusters) findCorrections();
+  findCorrections();
   begin();
 }
 

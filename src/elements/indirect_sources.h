@@ -39,11 +39,10 @@ struct SourceScene {
 
 /// Each cell of the sources is a patch of its own: rays go from some of its places, once, and each
 /// pass computes its light anew from the cells where they end, as Jacobi's iteration does. It
-/// begins with the light of the solution, whose patches are coarser and may share unknowns, and
-/// ends when little changes. Where every patch has an unknown of its own, the solution knows what
-/// rays ought to find if each patch had a single radiosity: by how much they miss that, in the mean
-/// of a patch, is added in all passes (a control variate). Roots that are not evaluated keep the
-/// light of the solution, but for the share that all others gain.
+/// begins with the light of the solution, whose patches are coarser, and ends when little changes.
+/// The solution knows what rays ought to find if each patch had a single radiosity: by how much
+/// they miss that, in the mean of a patch, is added in all passes (a control variate). Roots that
+/// are not evaluated keep the light of the solution, but for the share that all others gain.
 class IndirectSources {
  public:
   /// `rays`: of a cell, `most_rays`: of all, but for one place a cell.

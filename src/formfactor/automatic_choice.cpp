@@ -36,10 +36,10 @@ constexpr double kShortSeconds = 0.5;
 /// What could not be prepared at first would hardly be sampled the second time in less than this.
 constexpr double kUnpreparedSeconds = 1;
 
-/// From so many unknowns on the pairs that rays find take gigabytes, and say no more of the light:
+/// From so many patches on the pairs that rays find take gigabytes, and say no more of the light:
 /// rows that are cut take their place, but for a tolerance below this, which asks for more rays
 /// than these have.
-constexpr std::size_t kManyUnknowns = 20'000;
+constexpr std::size_t kManyPatches = 20'000;
 constexpr double kFinestCut = 5e-3;
 
 std::string secondsText(double seconds) {
@@ -48,11 +48,9 @@ std::string secondsText(double seconds) {
   return fmt::format("about {} s", countText(std::size_t(std::llround(seconds))));
 }
 
-/// The seconds that exact may take and still be chosen. With shared unknowns it must be the faster
-/// one: an error of their light is larger than that of either method's form factors.
-double secondsExactMayTake(const PatchMesh& mesh, const FormFactorOptions& options,
-                           double other_seconds) {
-  if (options.tolerance || mesh.clusters) return other_seconds;
+/// The seconds that exact may take and still be chosen.
+double secondsExactMayTake(const FormFactorOptions& options, double other_seconds) {
+  if (options.tolerance) return other_seconds;
   return std::max(kTimesForAccuracy * other_seconds, kSecondsForAccuracy);
 }
 
@@ -89,7 +87,7 @@ std::string otherReason(const std::optional<FormFactorPlan>& exact, bool fits,
 }  // namespace
 
 FormFactorMethod besideExact(const PatchMesh& mesh, const FormFactorOptions& options) {
-  const bool many = mesh.unknowns() >= kManyUnknowns && !options.needs_pairs &&
+  const bool many = mesh.size() >= kManyPatches && !options.needs_pairs &&
                     options.toleranceOf(FormFactorMethod::cut) >= kFinestCut;
   return many ? FormFactorMethod::cut : FormFactorMethod::rays;
 }
@@ -109,7 +107,7 @@ Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Pro
   }
   Chosen other{prepareMethod(besideExact(mesh, options), mesh, options), {}};
   other.plan = other.method->plan(progress);
-  const double most = secondsExactMayTake(mesh, options, other.plan.seconds);
+  const double most = secondsExactMayTake(options, other.plan.seconds);
   const bool prepared = exact.method->secondsPreparing() > 0;
   const double least = prepared ? 2 * kSecondSeconds : kUnpreparedSeconds / kPlanShare;
   if (!planned && most > least) {

@@ -14,12 +14,11 @@
 
 namespace radiosity {
 
-ClosedRows::ClosedRows(const PatchMesh& mesh, bool of_unknowns)
-    : of_unknowns_(of_unknowns), state_(of_unknowns ? mesh.unknowns() : mesh.size(), kClosed) {
+ClosedRows::ClosedRows(const PatchMesh& mesh) : state_(mesh.size(), kClosed) {
   std::optional<Enclosures> found;
   const Enclosures& enclosures = enclosuresOf(mesh, found);
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (enclosures.enclosed[i] == 0) state_[rowOf(mesh, i)] = kOpen;
+    if (enclosures.enclosed[i] == 0) state_[i] = kOpen;
   }
 }
 
@@ -42,7 +41,7 @@ void ClosedRows::report(const PatchMesh& mesh, FormFactorReport& report) const {
   if (refuted == 0) return;
   std::set<std::string> names;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (state_[rowOf(mesh, i)] == kRefuted) names.insert(mesh.surface_names[mesh.surface[i]]);
+    if (state_[i] == kRefuted) names.insert(mesh.surface_names[mesh.surface[i]]);
   }
   report.notes.push_back(
       {Severity::warning,
@@ -51,10 +50,6 @@ void ClosedRows::report(const PatchMesh& mesh, FormFactorReport& report) const {
                    "they are cut)",
                    refuted, joinNames(std::vector<std::string>(names.begin(), names.end())),
                    spelled("faces_as_patches"))});
-}
-
-std::size_t ClosedRows::rowOf(const PatchMesh& mesh, std::size_t patch) const {
-  return of_unknowns_ ? mesh.unknownOf(patch) : patch;
 }
 
 }  // namespace radiosity

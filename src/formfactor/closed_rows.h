@@ -9,12 +9,11 @@
 
 namespace radiosity {
 
-/// Rows whose patches are all enclosed (Enclosures::enclosed): they see fronts and backs alone. If
-/// a method nevertheless misses much of a row, the row is open.
+/// Rows of patches that are enclosed (Enclosures::enclosed): they see fronts and backs alone. If a
+/// method nevertheless misses much of a row, the row is open.
 class ClosedRows {
  public:
-  /// Rows of unknowns, or of patches.
-  ClosedRows(const PatchMesh& mesh, bool of_unknowns);
+  explicit ClosedRows(const PatchMesh& mesh);
 
   bool closed(std::size_t row) const { return state_[row] == kClosed; }
   bool any() const;
@@ -39,9 +38,7 @@ class ClosedRows {
   static constexpr std::uint8_t kOpen = 0;
   static constexpr std::uint8_t kClosed = 1;
   static constexpr std::uint8_t kRefuted = 2;
-  std::size_t rowOf(const PatchMesh& mesh, std::size_t patch) const;
 
-  bool of_unknowns_;
   std::vector<std::uint8_t> state_;
 };
 

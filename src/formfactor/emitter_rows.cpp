@@ -12,7 +12,7 @@ namespace radiosity {
 namespace {
 
 /// Tolerances of exact rows beside rays or hemicubes: errors of a pair, relative to the mean form
-/// factor. The first that is not too much work is taken. (Furnished room, 2,000 unknowns: their
+/// factor. The first that is not too much work is taken. (Furnished room, 2,000 patches: their
 /// view of its lamp differs by .05% rms between the two, and is 3.7% off by rays to 1e-2; the first
 /// takes four times as long as the second.)
 constexpr std::array<double, 2> kTolerances{FormFactorOptions::kExactTolerance, 1e-2};
@@ -30,26 +30,12 @@ constexpr std::size_t kMostShadowPairs = 10'000'000;
 constexpr double kShadowsARay = 4;
 constexpr double kFewShadows = 3e7;
 
-/// The unknowns whose rows are to be exact, or their patches.
-std::vector<Index> wantedRows(const PatchMesh& mesh, const std::vector<Index>& unknowns,
-                              bool of_unknowns) {
-  if (of_unknowns || !mesh.clusters) return unknowns;
-  std::vector<Index> patches;
-  for (const Index unknown : unknowns) {
-    const auto own = mesh.clusters->patchesOf(unknown);
-    patches.insert(patches.end(), own.begin(), own.end());
-  }
-  std::sort(patches.begin(), patches.end());
-  return patches;
-}
-
 }  // namespace
 
 /// What the rows are of, and what they may take.
 struct EmitterRows::Room {
   const PatchMesh& mesh;
   const FormFactorOptions& options;
-  std::vector<Index> wanted;
   RoomForExactRows most;
   FormFactorPlan& plan;
 };
@@ -67,24 +53,21 @@ std::unique_ptr<const EmitterRows> EmitterRows::planned(const PatchMesh& mesh,
                                                         FormFactorPlan& plan, Progress& progress) {
   const std::optional<RoomForExactRows> most = method.roomForExactRows();
   if (!most || options.exact_rows.empty()) return nullptr;
-  const bool of_unknowns = traitsOf(plan.method).counts_unknowns;
   const Stopwatch watch;
   auto rows = std::make_unique<EmitterRows>();
-  if (!of_unknowns && mesh.clusters) rows->patches_.emplace(mesh).clusters.reset();
-  const Room room{rows->patches_ ? made(rows->patches_) : mesh, options,
-                  wantedRows(mesh, options.exact_rows, of_unknowns), *most, plan};
+  const Room room{mesh, options, *most, plan};
   const bool fits = rows->planExact(room, progress) || rows->planShadows(room, progress);
   rows->seconds_ = watch.seconds();
   return fits ? std::move(rows) : nullptr;
 }
 
 bool EmitterRows::planExact(const Room& room, Progress& progress) {
-  const std::size_t pairs = room.wanted.size() * room.mesh.unknowns();
+  const std::size_t pairs = room.options.exact_rows.size() * room.mesh.size();
   const double most = std::max(kLittleWork, room.most.work);
   if (pairs > kMostPairs) return false;
   if (kPreparedWork * double(room.mesh.size()) > kPreparedShare * most) return false;
   progress.begin("preparing", ExactScene::kSteps);
-  LeadingRows& rows = exact_.emplace(room.mesh, room.wanted, room.options, progress);
+  LeadingRows& rows = exact_.emplace(room.mesh, room.options.exact_rows, room.options, progress);
   progress.end();
   RowSample sample = rows.sample(progress);
   for (const double tolerance : kTolerances) {
@@ -101,10 +84,11 @@ bool EmitterRows::planExact(const Room& room, Progress& progress) {
 }
 
 bool EmitterRows::planShadows(const Room& room, Progress& progress) {
-  const std::size_t pairs = room.wanted.size() * room.mesh.unknowns();
+  const std::size_t pairs = room.options.exact_rows.size() * room.mesh.size();
   if (pairs > kMostShadowPairs) return false;
   progress.begin("preparing", 1);
-  const ShadowRows& rows = by_shadows_.emplace(room.mesh, room.wanted, room.options.seed);
+  const ShadowRows& rows =
+      by_shadows_.emplace(room.mesh, room.options.exact_rows, room.options.seed);
   progress.end();
   const double most = std::max(kFewShadows, kShadowsARay * room.most.work / kExactWorkARay);
   if (rows.rays() > most) return false;

@@ -1,4 +1,4 @@
-// The rows of unknowns that emit, beside which rays or hemicubes make all others.
+// The rows of patches that emit, beside which rays or hemicubes make all others.
 #pragma once
 
 #include <memory>
@@ -30,8 +30,7 @@ class EmitterRows {
   bool planExact(const Room& room, Progress& progress);
   bool planShadows(const Room& room, Progress& progress);
 
-  std::optional<PatchMesh> patches_;  ///< if the method makes rows of clusters' patches: these
-  std::optional<LeadingRows> exact_;  ///< of them, or of the mesh
+  std::optional<LeadingRows> exact_;
   std::optional<ShadowRows> by_shadows_;
   double seconds_ = 0;  ///< for preparing these
 };

@@ -29,12 +29,12 @@ struct FormFactorPlan::Prepared {
 
 namespace {
 
-void requireUnknowns(const std::vector<Index>& rows, std::size_t unknowns) {
+void requirePatches(const std::vector<Index>& rows, std::size_t patches) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (rows[k] < unknowns && (k == 0 || rows[k - 1] < rows[k])) continue;
+    if (rows[k] < patches && (k == 0 || rows[k - 1] < rows[k])) continue;
     throw InputError(
-        fmt::format("exact_rows[{}] = {}: give unknowns in ascending order, each once and below {}",
-                    k, rows[k], unknowns));
+        fmt::format("exact_rows[{}] = {}: give patches in ascending order, each once and below {}",
+                    k, rows[k], patches));
   }
 }
 
@@ -49,7 +49,7 @@ void noteRowsThatAreNotExact(const FormFactorPlan& plan, FormFactorReport& repor
   report.notes.push_back(
       {Severity::info,
        fmt::format("rows of the {} {} by {}: exact ones would take too long", countText(wanted),
-                   wanted == 1 ? "unknown that emits are" : "unknowns that emit are", way)});
+                   wanted == 1 ? "patch that emits are" : "patches that emit are", way)});
 }
 
 /// The same method where its own rows have to bring what emits, too.
@@ -98,7 +98,7 @@ FormFactorPlan planFormFactors(std::shared_ptr<const PatchMesh> mesh,
                                const FormFactorOptions& options, Progress& progress) {
   if (!mesh) throw std::logic_error("planFormFactors(): no mesh");
   options.validate();
-  requireUnknowns(options.exact_rows, mesh->unknowns());
+  requirePatches(options.exact_rows, mesh->size());
   const Stopwatch watch;
   FormFactorOptions used = options;
   Chosen chosen;

@@ -25,13 +25,13 @@ KnownEntries::KnownEntries(std::vector<KnownRow> rows, std::span<const Index> po
   row_at_.assign(position.size(), kNone);
   entries_.resize(position.size());
   for (Index r = 0; r < rows_.size(); ++r) {
-    row_at_[position[rows_[r].unknown]] = r;
+    row_at_[position[rows_[r].patch]] = r;
     limitBacks(rows_[r].backs);
   }
   for (const KnownRow& row : rows_) {
-    const Index own = position[row.unknown];
-    for (const auto& [unknown, exchange, error] : row.entries) {
-      const Index other = position[unknown];
+    const Index own = position[row.patch];
+    for (const auto& [patch, exchange, error] : row.entries) {
+      const Index other = position[patch];
       entries_[own].push_back({other, exchange, error});
       if (row_at_[other] == kNone) entries_[other].push_back({own, exchange, error});
     }
@@ -60,7 +60,7 @@ RowAccount KnownEntries::account(std::size_t position, double area, bool closed)
 std::uint64_t KnownEntries::identity() const {
   Hash hash;
   for (const KnownRow& row : rows_) {
-    hash.bytes(&row.unknown, sizeof row.unknown);
+    hash.bytes(&row.patch, sizeof row.patch);
     for (const KnownExchange& entry : row.entries) {
       hash.bytes(&entry.exchange, sizeof entry.exchange);
     }

@@ -27,11 +27,11 @@ class KnownEntries {
   };
 
   KnownEntries() = default;
-  /// `position`: that of each unknown, K values.
+  /// `position`: that of each patch, K values.
   KnownEntries(std::vector<KnownRow> rows, std::span<const Index> position);
 
   bool empty() const { return rows_.empty(); }
-  /// The row of the unknown at a position if all of it is known, else null.
+  /// The row of the patch at a position if all of it is known, else null.
   const KnownRow* rowAt(std::size_t position) const {
     return empty() || row_at_[position] == kNone ? nullptr : &rows_[row_at_[position]];
   }
@@ -40,7 +40,7 @@ class KnownEntries {
     return empty() ? std::span<const Entry>() : std::span<const Entry>(entries_[position]);
   }
 
-  /// What a row of `area` m^2 sees of known unknowns: the sum of its known form factors.
+  /// What a row of `area` m^2 sees of known patches: the sum of its known form factors.
   double share(std::size_t position, double area) const;
   /// The account of a row that is known whole. If it is `closed`, without sky, its fronts are 1
   /// less its backs.

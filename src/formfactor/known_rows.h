@@ -1,4 +1,4 @@
-// Exchange of some unknowns with all others, known before the rest of a matrix is estimated.
+// Exchange of some patches with all others, known before the rest of a matrix is estimated.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +9,17 @@
 
 namespace radiosity {
 
-/// The exchange area of an unknown with another, m^2.
+/// The exchange area of a patch with another, m^2.
 struct KnownExchange {
-  Index unknown;
+  Index patch;
   double exchange;  ///< G, above 0
   double error;     ///< of it, absolute; 0 or more
 };
 
-/// The exchange of an unknown with all others, and the backs that it sees.
+/// The exchange of a patch with all others, and the backs that it sees.
 struct KnownRow {
-  Index unknown;
-  std::vector<KnownExchange> entries;  ///< unknowns ascending
+  Index patch;
+  std::vector<KnownExchange> entries;  ///< patches ascending
   std::vector<SeenBack> backs;         ///< shares of its view
 };
 

@@ -33,17 +33,16 @@ const LightOnPatches::Rays& LightOnPatches::rays() {
 
 std::vector<double> LightOnPatches::fromAround(std::span<const Light> lights,
                                                std::span<const double> open, int bands) const {
-  if (open.size() != mesh_.unknowns()) {
+  if (open.size() != mesh_.size()) {
     throw InputError(fmt::format("lights: {} shares of the sky where the mesh takes {}",
-                                 open.size(), mesh_.unknowns()));
+                                 open.size(), mesh_.size()));
   }
   const auto width = std::size_t(bands);
   std::vector<double> irradiance(mesh_.size() * width, 0.0);
   for (const Light& light : lights) {
     if (!light.isAllRound()) continue;
     for (std::size_t k = 0; k < irradiance.size(); ++k) {
-      const double share = open[mesh_.unknownOf(k / width)];
-      irradiance[k] += light.fromAround(k % width, std::max(0.0, share));
+      irradiance[k] += light.fromAround(k % width, std::max(0.0, open[k / width]));
     }
   }
   return irradiance;

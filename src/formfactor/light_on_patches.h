@@ -26,7 +26,7 @@ class LightOnPatches {
   explicit LightOnPatches(const PatchMesh& mesh);
   ~LightOnPatches();
 
-  /// Means over the patches of the lights that come from where nothing stands. `open`: by unknown,
+  /// Means over the patches of the lights that come from where nothing stands. `open`: by patch,
   /// the share of what leaves it that meets nothing, of which an exact row's account may be a
   /// little below 0. Errors: InputError if shares are not those of the mesh.
   std::vector<double> fromAround(std::span<const Light> lights, std::span<const double> open,

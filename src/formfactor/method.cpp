@@ -1,21 +1,11 @@
 #include "formfactor/method.h"
 
-#include <algorithm>
 #include <utility>
-
-#include "formfactor/cluster_factors.h"
 
 namespace radiosity {
 
 FormFactorPlan PreparedMethod::plan(Progress& progress) {
   auto [plan, memory] = foresee(progress);
-  if (mesh_.clusters && !traits_.counts_unknowns) {
-    const bool symmetric = options_.givesSymmetric();
-    const Precision precision = options_.storedPrecision();
-    memory.bytes += clusterFactorsBytes(mesh_, symmetric, precision, plan.matrix_bytes);
-    plan.matrix_bytes =
-        std::min(plan.matrix_bytes, clusterMatrixBytes(mesh_, symmetric, precision));
-  }
   memory_ = memory;
   matrix_bytes_ = plan.matrix_bytes;
   plan.method = traits_.method;
@@ -25,7 +15,7 @@ FormFactorPlan PreparedMethod::plan(Progress& progress) {
 }
 
 RowMemory PreparedMethod::memory(const Processes* processes) const {
-  if (processes == nullptr || traits_.counts_unknowns) return memory_;
+  if (processes == nullptr || traits_.counts_rays) return memory_;
   return shareOf(memory_, matrix_bytes_, processes->size());
 }
 
@@ -35,14 +25,12 @@ FormFactors PreparedMethod::compute(KnownRows known, Progress& progress, RowJour
   if (roomForExactRows() && !options_.exact_rows.empty()) known_rows = known.rows.size();
   const bool are_exact = known.are_exact;
   const RowMemory held = memory(processes);
-  const std::size_t rows = traits_.counts_unknowns ? mesh_.unknowns() : mesh_.size();
-  FormFactors result =
-      make(std::move(known), {progress, journal, processes, makeRowMemory(held, options_, rows)});
+  FormFactors result = make(std::move(known), {progress, journal, processes,
+                                               makeRowMemory(held, options_, mesh_.size())});
   result.method = traits_.method;
   result.report.polygons = mesh_.polygons.size();
   result.report.estimated_bytes = held.bytes;
   (are_exact ? result.report.exact_rows : result.report.shadow_rows) = known_rows;
-  if (mesh_.clusters && !traits_.counts_unknowns) return clusterFactors(result, mesh_, progress);
   return result;
 }
 

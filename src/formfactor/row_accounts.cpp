@@ -8,10 +8,8 @@
 #include <numeric>
 #include <set>
 #include <string>
-#include <utility>
 
 #include "base/geometry/box.h"
-#include "mesh/clusters/canonical_order.h"
 #include "radiosity/spelling.h"
 #include "scene/surface_names.h"
 #include "scene/text.h"
@@ -95,18 +93,6 @@ std::optional<Note> nothingSeenNote(const PatchMesh& mesh) {
       fmt::format("{}: the closed shell {} faces outward, so nothing inside it sees "
                   "anything; if it is a room, turn it over, {}",
                   kWhat, joinNames(solids, 6), flipOption(solids, mesh.surface_names.size()))};
-}
-
-UnknownOrder unknownOrder(const PatchMesh& mesh) {
-  UnknownOrder order;
-  std::vector<std::uint8_t> met(mesh.unknowns(), 0);
-  for (const Index patch : canonicalOrder(mesh)) {
-    const std::size_t unknown = mesh.unknownOf(patch);
-    if (std::exchange(met[unknown], 1) != 0) continue;
-    order.unknown.push_back(Index(unknown));
-    order.first_patch.push_back(patch);
-  }
-  return order;
 }
 
 void addBack(const SeenBack& back, std::vector<SeenBack>& backs) {

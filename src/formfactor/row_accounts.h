@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "radiosity/form_factors.h"
@@ -30,13 +29,5 @@ void accountForBacks(const PatchMesh& mesh, std::span<const Index> order,
 /// A loud note for a mesh in which no patch sees the front of another: as a rule a room that faces
 /// outward. Nothing if all lies in one plane and faces alike, which is as it must be.
 std::optional<Note> nothingSeenNote(const PatchMesh& mesh);
-
-/// Unknowns in the order of their first patches in canonicalOrder()
-/// (mesh/clusters/canonical_order.h), and these patches.
-struct UnknownOrder {
-  std::vector<Index> unknown;
-  std::vector<Index> first_patch;
-};
-UnknownOrder unknownOrder(const PatchMesh& mesh);
 
 }  // namespace radiosity

@@ -30,7 +30,7 @@ std::uint64_t checksumOfMesh(const PatchMesh& mesh) {
 
 }  // namespace
 
-void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
+void requireShareable(const FormFactorOptions& options) {
   constexpr const char* kNeedsAllRows =
       " needs all rows in one process: leave it out, or start the program without mpirun";
   const MethodTraits& method = traitsOf(options.method);
@@ -44,14 +44,8 @@ void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options) {
   if (options.symmetrize) {
     throw InputError(spelled("symmetrize") + kNeedsAllRows);
   }
-  if (options.closure == ClosureMode::enforce && !method.counts_unknowns) {
+  if (options.closure == ClosureMode::enforce && !method.counts_rays) {
     throw InputError(spelled("closure", "enforce") + kNeedsAllRows);
-  }
-  if (mesh.clusters && !method.counts_unknowns && !automatic) {
-    throw InputError(
-        fmt::format("under mpirun patches share unknowns where rays count between these: give {} "
-                    "or more {}, or start the program without mpirun",
-                    spelled("method", "rays"), spelled("patches")));
   }
 }
 

@@ -8,7 +8,7 @@
 namespace radiosity {
 
 /// Throws InputError, with the cure, if these form factors cannot be shared.
-void requireShareable(const PatchMesh& mesh, const FormFactorOptions& options);
+void requireShareable(const FormFactorOptions& options);
 
 /// Called by process 0 in computeFormFactors(), before rows are computed, while the others are in
 /// shareFormFactors().

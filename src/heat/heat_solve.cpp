@@ -61,7 +61,7 @@ const ExchangeOperator& checked(const FormFactors& factors) {
 }  // namespace
 
 HeatSolve::HeatSolve(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
-                     std::span<const double> more, Progress& progress)
+                     Progress& progress)
     : factors_(factors),
       rows_(rows),
       options_(options),
@@ -83,7 +83,6 @@ HeatSolve::HeatSolve(const FormFactors& factors, const HeatRows& rows, const Hea
   for (std::size_t k = 0; k < falling_.size(); ++k) {
     falling_[k] = std::max(0.0, factors.sky[k / width_]) * sky *
                   black_.fraction(int(k % width_), options.sky_temperature);
-    if (!more.empty()) falling_[k] += more[k];
   }
 }
 

@@ -27,10 +27,9 @@ namespace radiosity {
 /// round in circles.
 class HeatSolve {
  public:
-  /// Keeps all by reference. `more`: additional irradiance beyond that of matrix and sky,
-  /// N * bands, W/m^2; or empty. Errors: as solveHeat().
+  /// Keeps all by reference. Errors: as solveHeat().
   HeatSolve(const FormFactors& factors, const HeatRows& rows, const HeatOptions& options,
-            std::span<const double> more, Progress& progress);
+            Progress& progress);
   HeatSolution run();
 
  private:
@@ -84,7 +83,7 @@ class HeatSolve {
   std::vector<double> temperature_;   ///< of each row
   std::vector<double> emissivity_;    ///< N * bands, at that temperature
   std::vector<double> emitted_;       ///< N * bands: eps E(T)
-  std::vector<double> falling_;       ///< N * bands, from the sky, and `more`
+  std::vector<double> falling_;       ///< N * bands, from the sky
   std::vector<std::uint8_t> dark_;    ///< N * bands: no light reaches it
   // The denominator of y in the current step, by node, and the numerator without H.
   std::vector<double> gain_;

@@ -94,7 +94,7 @@ std::vector<SurfaceHeat> heatBySurface(const HeatSolution& solution, const Patch
   for (const Index surface : mesh.surface) group.push_back(groups.of_surface[surface]);
   Parts parts{mesh.area, group, {}};
   for (std::size_t i = 0; i < mesh.size() && !factors.error.empty(); ++i) {
-    parts.error.push_back(factors.error[mesh.unknownOf(i)]);
+    parts.error.push_back(factors.error[i]);
   }
   return summed(solution, parts, groups.names);
 }

@@ -1,4 +1,3 @@
-#include "mesh/clusters/cluster_patches.h"
 #include "mesh/polygons/complex.h"
 
 namespace radiosity {
@@ -12,7 +11,6 @@ MeshResult meshScene(const Scene& scene, const MeshOptions& options, Progress& p
   } else {
     const CoarseComplex complex = buildComplex(scene, options, result.report, progress);
     result.mesh = subdivide(complex, scene, options, result.report, progress);
-    if (options.max_edge == 0) shareUnknowns(result.mesh, options, result.report, progress);
   }
   result.mesh.enclosures = findEnclosures(result.mesh, progress);
   return result;

@@ -22,7 +22,7 @@ struct FactorCodes {
   static constexpr std::uint32_t kLargestCode = 65535;
 };
 
-/// The codes of a symmetric matrix (ExchangeOperator::isSymmetric()) of at most kMostPageUnknowns
+/// The codes of a symmetric matrix (ExchangeOperator::isSymmetric()) of at most kMostPageNodes
 /// rows. Rows are dense if more than half of all pairs are kept. Throws Cancelled.
 FactorCodes encodeFactors(const ExchangeMatrix& matrix, Progress& progress);
 

@@ -6,7 +6,6 @@
 #include "base/geometry/box.h"
 #include "radiosity/names.h"
 #include "radiosity/version.h"
-#include "solve/beyond_means.h"
 
 namespace radiosity::page {
 
@@ -57,6 +56,8 @@ Json toleranceOf(const FormFactors& factors, const FormFactorOptions& options) {
 
 }  // namespace
 
+std::vector<float> floats(std::span<const double> values) { return {values.begin(), values.end()}; }
+
 PatchColours patchColours(const PatchMaterials& materials, const Solution& solution) {
   return {rgbOf(materials.reflectance, materials.bands), rgbOf(materials.emission, materials.bands),
           rgbOf(solution.irradiance, solution.bands)};
@@ -95,7 +96,6 @@ void describeScene(Json& header, const Scene& scene, const PatchMesh& mesh,
   header["title"] = options.title;
   header["program"] = "radiosity " RADIOSITY_VERSION;
   header["patches"] = mesh.size();
-  header["unknowns"] = mesh.unknowns();
   header["exposure"] = options.exposure;
   const Camera& camera = options.camera;
   header["camera"] = {{"eye", json(camera.eye)},
@@ -113,7 +113,6 @@ void describeSolution(Json& header, const FormFactors& factors, const Solution& 
   header["method"] = nameOf(kFactorsFromNames, factors.method);
   header["tolerance"] = toleranceOf(factors, options.factors);
   header["closed"] = factors.report.closed;
-  header["sees_out"] = seesOut(factors);
   const SolveSummary& summary = solution.summary;
   const Solver ran = summary.solver == Solver::automatic ? options.solve.solver : summary.solver;
   header["solver"] = {

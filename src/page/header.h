@@ -18,6 +18,8 @@ struct PatchColours {
 /// Errors: as rgbOf().
 PatchColours patchColours(const PatchMaterials& materials, const Solution& solution);
 
+std::vector<float> floats(std::span<const double> values);
+
 /// The colours of a material: the common value of its patches, to the bit, or their mean by area.
 struct MaterialColours {
   Vec3 reflectance{0.0};

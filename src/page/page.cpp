@@ -5,14 +5,13 @@
 #include <algorithm>
 
 #include "base/figure_text.h"
-#include "formfactor/light_on_patches.h"
-#include "mesh/clusters/cluster_means.h"
 #include "page/container.h"
 #include "page/eyes.h"
 #include "page/factor_codes.h"
 #include "page/header.h"
 #include "page/html.h"
-#include "page/seen.h"
+#include "page/lamps.h"
+#include "page/nodes.h"
 #include "page/surfaces.h"
 #include "radiosity/spelling.h"
 #include "results/glb.h"
@@ -23,16 +22,6 @@ namespace page {
 
 namespace {
 
-std::vector<float> floats(std::span<const double> values) { return {values.begin(), values.end()}; }
-
-std::vector<std::uint32_t> unknownsOf(const PatchMesh& mesh) {
-  std::vector<std::uint32_t> unknowns;
-  unknowns.reserve(mesh.size());
-  for (std::size_t i = 0; i < mesh.size(); ++i)
-    unknowns.push_back(std::uint32_t(mesh.unknownOf(i)));
-  return unknowns;
-}
-
 void addPatches(const PatchMesh& mesh, const PatchColours& colours, const Vec3& origin,
                 Container& container) {
   container.add("normal", packed(mesh.normal));
@@ -40,53 +29,21 @@ void addPatches(const PatchMesh& mesh, const PatchColours& colours, const Vec3& 
   container.add("area", floats(mesh.area));
   container.add("surface", mesh.surface);
   container.add("side", mesh.side);
-  container.add("unknown", unknownsOf(mesh));
   container.add("emission", floats(colours.emission));
   container.add("reflectance", floats(colours.reflectance));
   container.add("irradiance", floats(colours.irradiance));
 }
 
-/// Lights without a surface: irradiance of unknowns by each, and what comes from where nothing
-/// stands.
-void addLights(const PatchMaterials& materials, const PatchMesh& mesh, const FormFactors& factors,
-               Progress& progress, Container& container) {
-  const int bands = materials.bands;
-  Container::Json lights = Container::Json::array();
-  LightOnPatches on_patches(mesh);
-  for (const Light& light : materials.lights) {
-    if (!light.shines()) continue;
-    std::vector<double> irradiance =
-        on_patches.all({&light, 1}, factors.sky, bands, progress).irradiance;
-    if (mesh.clusters) irradiance = clusterMeans(mesh, irradiance, bands);
-    container.add("light_" + std::to_string(lights.size()), floats(rgbOf(irradiance, bands)));
-    lights.push_back({{"name", light.name},
-                      {"kind", light.traits().word},
-                      {"single", light.traits().single},
-                      {"unit", light.traits().unit},
-                      {"strength", rgbOf(light.strength, bands)},
-                      {"parameters", light.briefText()},
-                      {"radiance", rgbOf(background({&light, 1}, bands), bands)}});
-  }
-  container.header()["lights"] = lights;
-}
-
-void addFactors(const FormFactors& factors, const ExchangeMatrix& matrix, const FactorCodes& codes,
-                Container& container) {
-  container.add("unknown_area", floats(matrix.area()));
-  container.add("order", matrix.order());
-  container.add("row_sum", floats(factors.fronts));
-  container.add("row_error", floats(factors.error));
+void addFactors(const PageNodes& nodes, const FactorCodes& codes, Container& container) {
+  container.header()["nodes"] = nodes.size();
+  container.add("node", nodes.of_patch);
+  container.add("node_area", floats(nodes.matrix->area()));
+  container.add("order", nodes.matrix->order());
+  container.add("row_sum", floats(nodes.fronts));
+  container.add("row_error", floats(nodes.error));
   container.add("factor_begin", codes.begin);
   container.add("factor_column", codes.column);
   container.add("factor_code", codes.code);
-}
-
-void requireOneEstimate(const std::string& name, const ExchangeMatrix& matrix) {
-  if (matrix.isSymmetric()) return;
-  throw InputError(
-      fmt::format("{}: a page keeps one form factor a pair, and these are two estimates of each; "
-                  "compute them with {}, or with {} or rays",
-                  name, spelled("symmetrize"), spelled("method", "exact")));
 }
 
 }  // namespace
@@ -97,12 +54,12 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   const Scene& scene = pipeline.scene();
   const PatchMesh& mesh = pipeline.mesh().mesh;
   requirePageFits(scene.file, mesh);
-  const ExchangeMatrix& matrix = pairsOf(pipeline.matrix());
-  requireOneEstimate(scene.file, matrix);
-  const Solution& solution = pipeline.solution();
+  const ExchangeOperator& matrix = pipeline.matrix();
   const FormFactors& factors = pipeline.factors();
+  const PageNodes nodes = pageNodes(scene.file, mesh, factors, progress);
+  const Solution& solution = pipeline.solution();
   const PatchColours colours = patchColours(pipeline.materials(), solution);
-  const FactorCodes codes = encodeFactors(matrix, progress);
+  const FactorCodes codes = encodeFactors(*nodes.matrix, progress);
   const Vec3 origin = floatOrigin(mesh.vertices);
   Container container;
   describeScene(container.header(), scene, mesh, colours, options);
@@ -113,9 +70,10 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   addEyes(mesh, options.crease, origin, container);
   addPatches(mesh, colours, origin, container);
   addLights(pipeline.materials(), mesh, factors, progress, container);
-  addFactors(factors, matrix, codes, container);
-  addSeenPatches(mesh, progress, container);
+  addFactors(nodes, codes, container);
+  if (!nodes.arePatches()) addEmitted(scene, mesh, pipeline.materials(), matrix, container);
   report.element_triangles = addElements(mesh, light, options.crease, origin, container);
+  report.nodes = nodes.arePatches() ? 0 : nodes.size();
   report.pairs = codes.pairs;
   report.quantisation = codes.quantisation;
   std::vector<std::byte> data = container.bytes();
@@ -128,13 +86,6 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
 bool canWritePages() { return !page::pageTemplate().empty(); }
 
 void requirePageFits(const std::string& name, const PatchMesh& mesh) {
-  if (mesh.unknowns() > kMostPageUnknowns) {
-    throw InputError(fmt::format(
-        "{}: {} unknowns, and a page holds the form factors of at most {}; use fewer {}, "
-        "e.g. {}",
-        name, countText(mesh.unknowns()), countText(kMostPageUnknowns), spelled("patches"),
-        spelled("patches", "4000")));
-  }
   if (mesh.size() > kMostPagePatches) {
     throw InputError(fmt::format(
         "{}: {} patches, and a page holds at most {}; each planar piece is at least one patch: "

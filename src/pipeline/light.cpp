@@ -22,14 +22,6 @@ ScalarField brightnessField(const char* title, std::span<const double> values, i
   return {brightnessOfEach(values, bands), {title + brightnessText(bands), "W/m^2"}};
 }
 
-/// Gives every patch the value of its unknown.
-std::vector<double> ofPatches(const PatchMesh& mesh, std::span<const double> of_unknowns) {
-  std::vector<double> values;
-  values.reserve(mesh.size());
-  for (std::size_t i = 0; i < mesh.size(); ++i) values.push_back(of_unknowns[mesh.unknownOf(i)]);
-  return values;
-}
-
 }  // namespace
 
 SurfaceLight Pipeline::solvedLight() {
@@ -87,18 +79,12 @@ ScalarField Pipeline::field(Quantity quantity, std::size_t patch) {
       return brightnessField("irradiance H", light.irradiance, light.bands);
     }
     case Quantity::form_factor: {
-      const ExchangeOperator& factors = matrix();
-      const PatchMesh& patches = made(results_.mesh).mesh;
-      const char* between =
-          patches.clusters ? "form factor from cluster of patch" : "form factor from patch";
-      return {ofPatches(patches, factors.row(patches.unknownOf(patch))),
-              {fmt::format("{} {}", between, patch), ""}};
+      return {matrix().row(patch), {fmt::format("form factor from patch {}", patch), ""}};
     }
     case Quantity::row_sum:
       break;
   }
-  const FormFactors& seen = factors();
-  return {ofPatches(made(results_.mesh).mesh, seen.fronts), {"row sum: fronts seen", ""}};
+  return {factors().fronts, {"row sum: fronts seen", ""}};
 }
 
 }  // namespace radiosity

@@ -37,7 +37,7 @@ std::shared_ptr<FactorsHandle> formFactors(std::shared_ptr<MeshHandle> mesh, con
   handle->key = [options, mesh = handle->mesh] { return keyOfFactors(options, mesh->result.mesh); };
   runLong(report, [&](Progress& progress) {
     const PatchMesh& patches = handle->mesh->result.mesh;
-    options.exact_rows = emittingUnknowns(patches, handle->mesh->materials);
+    options.exact_rows = emittingPatches(patches, handle->mesh->materials);
     // The plan shares the mesh that the handle keeps.
     const std::shared_ptr<const PatchMesh> shared(handle->mesh, &patches);
     const FormFactorPlan plan = planFormFactors(shared, options, progress);

@@ -22,8 +22,7 @@ constexpr std::size_t kShortStepRows = 1200;
 constexpr int kShortStepBands = 3;
 
 bool hasShortSteps(const FactorsHandle& of, int bands) {
-  const bool shared = of.mesh && of.mesh->result.mesh.clusters;
-  return !shared && bands <= kShortStepBands && of.factors.matrix->size() <= kShortStepRows;
+  return bands <= kShortStepBands && of.factors.matrix->size() <= kShortStepRows;
 }
 
 /// Reflectance and emission, (rows, bands), and the sky's radiance or None: the lights of the

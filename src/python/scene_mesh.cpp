@@ -149,10 +149,6 @@ void bindMesh(py::module_& module) {
   array("source_face", &PatchMesh::source_face);
   array("side", &PatchMesh::side);
   array("twin", &PatchMesh::twin);
-  type.def_property_readonly("cluster", [](const py::object& self) -> py::object {
-    const auto& clusters = self.cast<const M&>().result.mesh.clusters;
-    return clusters ? py::object(view(clusters->of_patch, self)) : py::object(py::none());
-  });
   type.def_property_readonly("reflectance", [](const py::object& self) {
     const PatchMaterials& materials = self.cast<const M&>().materials;
     return rows(materials.reflectance, materials.bands, self);
@@ -165,7 +161,6 @@ void bindMesh(py::module_& module) {
       "sky", [](const M& m) { return background(m.materials.lights, m.materials.bands); });
   type.def_property_readonly("surface_names",
                              [](const M& m) { return m.result.mesh.surface_names; });
-  type.def_property_readonly("unknowns", [](const M& m) { return m.result.mesh.unknowns(); });
   type.def_property_readonly("has_scene", [](const M& m) { return m.scene != nullptr; });
   type.def_property_readonly("scene",
                              [](const M& m) { return std::const_pointer_cast<Scene>(m.scene); });

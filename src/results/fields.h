@@ -161,9 +161,6 @@ void describe(Archive& a, Described<Archive, PatchMesh>& m) {
   a("surface_names", m.surface_names);
   a("coincidence", m.coincidence);
   a.group("polygons", [&](auto& polygons) { describe(polygons, m.polygons); });
-  if (a.present("clusters", m.clusters)) {
-    a.group("clusters", [&](auto& clusters) { clusters("of_patch", m.clusters->of_patch); });
-  }
 }
 
 template <class Archive>

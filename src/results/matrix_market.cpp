@@ -74,8 +74,7 @@ void writeMatrixMarket(const std::string& path, const ExchangeMatrix& matrix,
   file.write(fmt::format(
       "%%MatrixMarket matrix coordinate real general\n"
       "% Form factors by radiosity: row i, column j holds F[i,j], the fraction of what\n"
-      "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1; where\n"
-      "% patches share unknowns, rows and columns are their clusters.\n"
+      "% leaves patch i that reaches patch j; no unit. Patches are numbered from 1.\n"
       "% The values as stored, {} bits, in 17 digits.\n",
       single ? 32 : 64));
   for (std::size_t i = 0; comment && i < n; ++i) file.write(fmt::format("% {}\n", comment(i)));

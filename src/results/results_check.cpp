@@ -149,25 +149,6 @@ void checkSides(const Checker& check, const PatchMesh& m) {
   }
 }
 
-/// Checks that cluster numbers are valid, that no cluster is empty, and that each lies on one side
-/// of one surface.
-void checkClusters(const Checker& check, const PatchMesh& m) {
-  constexpr const char* kObject = "/mesh/clusters/of_patch";
-  const std::vector<Index>& of_patch = made(m.clusters).of_patch;
-  check.length(of_patch, m.size(), kObject);
-  check.indices(of_patch, m.size(), false, kObject);
-  std::vector<Index> first(unknownsOf(m), kNone);
-  for (Index i = 0; i < of_patch.size(); ++i) {
-    Index& leader = first[of_patch[i]];
-    if (leader == kNone) leader = i;
-    check.require(m.surface[i] == m.surface[leader] && m.side[i] == m.side[leader], kObject,
-                  "puts patches of two surfaces or sides together");
-  }
-  for (std::size_t c = 0; c < first.size(); ++c) {
-    if (first[c] == kNone) check.fail(kObject, fmt::format("gives cluster {} no patch", c));
-  }
-}
-
 /// Checks what is said of each patch once all lengths and indices are right.
 void checkPatches(const Checker& check, const PatchMesh& m) {
   check.within(m.area, 0, HUGE_VAL, "/mesh/area");
@@ -208,7 +189,6 @@ void checkMesh(const Checker& check, const PatchMesh& m) {
   check.indices(m.twin, n, true, "/mesh/twin");
   checkPolygons(check, m);
   checkPatches(check, m);
-  if (m.clusters) checkClusters(check, m);
 }
 
 /// Checks that an account has a number for each band.
@@ -365,7 +345,7 @@ void checkBasis(const Checker& check, const LightBasis& basis, std::size_t patch
 
 /// Checks that there is one row for each unknown.
 void checkFactors(const Checker& check, const FormFactors& factors, const Results& results) {
-  const std::size_t rows = results.mesh ? unknownsOf(results.mesh->mesh) : factors.fronts.size();
+  const std::size_t rows = results.mesh ? results.mesh->mesh.size() : factors.fronts.size();
   check.length(factors.fronts, rows, "/form_factors/fronts");
   check.length(factors.backs, rows, "/form_factors/backs");
   check.length(factors.sky, rows, "/form_factors/sky");
@@ -382,11 +362,6 @@ void checkFactors(const Checker& check, const FormFactors& factors, const Result
 }
 
 }  // namespace
-
-std::size_t unknownsOf(const PatchMesh& mesh) {
-  if (!mesh.clusters || mesh.clusters->of_patch.empty()) return mesh.size();
-  return std::size_t(std::ranges::max(mesh.clusters->of_patch)) + 1;
-}
 
 void checkResults(const std::string& path, const Results& results) {
   const Checker check(path);

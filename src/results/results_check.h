@@ -9,7 +9,4 @@ namespace radiosity {
 /// detects wrong edits by other programs.
 void checkResults(const std::string& path, const Results& results);
 
-/// PatchMesh::unknowns() for a mesh whose clusters only have of_patch.
-std::size_t unknownsOf(const PatchMesh& mesh);
-
 }  // namespace radiosity

@@ -13,7 +13,6 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
-#include "mesh/clusters/cluster_patches.h"
 #include "radiosity/results.h"
 #include "results/fields.h"
 #include "results/h5_reader.h"
@@ -33,24 +32,10 @@ using h5::SizeCounter;
 
 constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
-constexpr std::int32_t kFormatVersion = 7;
+constexpr std::int32_t kFormatVersion = 8;
 
-/// The arrays of the mesh to which /form_factors links, so that a reader needs no other group:
-/// those of the rows, which are patches or clusters.
-using MeshLinks = std::span<const std::array<const char*, 2>>;
-constexpr std::array<std::array<const char*, 2>, 4> kPatchLinks = {
-    {{"normal", "normal"},
-     {"centroid", "centroid"},
-     {"surface", "surface"},
-     {"surface_names", "surface_names"}}};
-constexpr std::array<std::array<const char*, 2>, 1> kClusterLinks = {
-    {{"of_patch", "clusters/of_patch"}}};
-
-MeshLinks meshLinks(const Results& results) {
-  if (!results.mesh) return {};
-  if (results.mesh->mesh.clusters) return kClusterLinks;
-  return kPatchLinks;
-}
+/// The arrays of the mesh to which /form_factors links, so that a reader needs no other group.
+constexpr std::array kMeshLinks = {"normal", "centroid", "surface", "surface_names"};
 
 /// Writes into a group or a counter. `suffix`: appended to the names of groups.
 template <class Sink>
@@ -87,8 +72,9 @@ class StageWriter {
   void write(const StageOf<FormFactors>& stage) {
     if (factors_ == nullptr) return;
     Sink group = put(stage, *factors_);
-    for (const auto& [name, source] : meshLinks(results_)) {
-      group.link(name, root_, kStage<Stage::mesh>.group + ("/" + std::string(source)));
+    for (const char* name : kMeshLinks) {
+      if (results_.mesh)
+        group.link(name, root_, kStage<Stage::mesh>.group + ("/" + std::string(name)));
     }
     put_matrix_(group, *factors_->matrix);
   }
@@ -120,11 +106,7 @@ class StageWriter {
   }
   void putIdentity(Sink& group, const FormFactors& /*factors*/) {
     group.text("geometry_hash", geometry_hash_);
-    const bool shared = results_.mesh && results_.mesh->mesh.clusters;
-    group.text("entry", shared
-                            ? "F[i,j]: the fraction of what leaves cluster i that reaches "
-                              "cluster j; /mesh/clusters/of_patch names each patch's"
-                            : "F[i,j]: the fraction of what leaves patch i that reaches patch j");
+    group.text("entry", "F[i,j]: the fraction of what leaves patch i that reaches patch j");
   }
 
   Sink& root_;
@@ -259,12 +241,6 @@ Results readAtOnce(const std::string& path, bool with_factors,
   checkResults(path, results);
   if (results.mesh && geometryHash(results.mesh->mesh) != stages.geometryHash()) {
     file.fail("/mesh/geometry_hash", "is not that of /mesh: another program changed the patches");
-  }
-  if (results.mesh) {
-    std::optional<PatchClusters>& clusters = results.mesh->mesh.clusters;
-    if (clusters) {
-      clusters = clustersOf(std::move(clusters->of_patch), unknownsOf(results.mesh->mesh));
-    }
   }
   return results;
 }

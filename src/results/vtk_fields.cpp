@@ -7,17 +7,11 @@ std::vector<CellField> materialFields(const PatchMaterials& materials) {
           {"emission", "W/m^2", materials.bands, materials.emission}};
 }
 
-std::vector<CellField> factorFields(const PatchMesh& mesh, const FormFactors& factors) {
-  std::vector<CellField> fields;
-  const auto add = [&](const char* name, const std::vector<double>& rows) {
-    std::vector<double> values(mesh.size());
-    for (std::size_t i = 0; i < mesh.size(); ++i) values[i] = rows[mesh.unknownOf(i)];
-    fields.push_back({name, "", 1, std::move(values)});
-  };
-  add("row_sum", factors.fronts);
-  add("backs", factors.backs);
-  add("sky", factors.sky);
-  if (!factors.error.empty()) add("error", factors.error);
+std::vector<CellField> factorFields(const FormFactors& factors) {
+  std::vector<CellField> fields{{"row_sum", "", 1, factors.fronts},
+                                {"backs", "", 1, factors.backs},
+                                {"sky", "", 1, factors.sky}};
+  if (!factors.error.empty()) fields.push_back({"error", "", 1, factors.error});
   return fields;
 }
 

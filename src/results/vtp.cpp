@@ -123,13 +123,12 @@ void writeIdentity(VtpFile& file, const PatchMesh& mesh) {
   file.strings("surface", names);
   file.array("surface_id", as<std::int64_t>(mesh.surface));
   file.array("side", mesh.side);
-  if (mesh.clusters) file.array("unknown", as<std::int64_t>(mesh.clusters->of_patch));
   file.array("area", mesh.area, 1, "m^2");
 }
 
 void requireFields(const std::string& path, const PatchMesh& mesh,
                    std::span<const CellField> fields) {
-  std::set<std::string> names = {"patch", "surface", "surface_id", "side", "unknown", "area"};
+  std::set<std::string> names = {"patch", "surface", "surface_id", "side", "area"};
   for (const CellField& field : fields) {
     if (field.components < 1 ||
         field.values.size() != mesh.size() * std::size_t(field.components)) {

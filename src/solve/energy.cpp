@@ -9,7 +9,8 @@
 namespace radiosity {
 
 double mostImbalance(const FormFactors& factors) {
-  return std::max(traitsOf(factors.method).imbalance, factors.report.error_figure);
+  return std::max({traitsOf(factors.method).imbalance, factors.report.error_figure,
+                   factors.report.cut.error()});
 }
 
 std::string imbalanceCure(FormFactorMethod method) { return traitsOf(method).cure(); }

@@ -1,8 +1,8 @@
+#include "solve/patch_names.h"
+
 #include <fmt/format.h>
 
 #include <set>
-
-#include "solve/solve_rows.h"
 
 namespace radiosity {
 

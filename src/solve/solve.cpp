@@ -9,12 +9,12 @@
 #include "base/figure_text.h"
 #include "base/option_list.h"
 #include "base/processor_clock.h"
+#include "formfactor/light_on_patches.h"
 #include "solve/band_plan.h"
-#include "solve/cluster_solve.h"
 #include "solve/energy.h"
 #include "solve/linear_solve.h"
+#include "solve/patch_names.h"
 #include "solve/singular.h"
-#include "solve/solve_rows.h"
 
 namespace radiosity {
 
@@ -109,8 +109,7 @@ void nameDarkness(std::span<const double> by_lights, SolveSummary& summary) {
           : "no light: no patch emits, so everything is dark; usable, but black";
 }
 
-}  // namespace
-
+/// Errors: InputError if a reflectance is not within 0 and 1, or an emission not finite and >= 0.
 void checkMaterials(std::span<const double> reflectance, std::span<const double> emission,
                     int bands, const PatchNames& names) {
   for (std::size_t k = 0; k < reflectance.size(); ++k) {
@@ -126,14 +125,10 @@ void checkMaterials(std::span<const double> reflectance, std::span<const double>
   }
 }
 
-void SolveOptions::validate() const { requireRanges(*this); }
-
-namespace {
-
 Solution solveUntimed(const FormFactors& factors, std::span<const double> reflectance,
                       std::span<const double> emission, int bands, const SolveOptions& options,
                       Progress& progress, const PatchNames& names,
-                      std::span<const double> by_lights, std::span<const double> more) {
+                      std::span<const double> by_lights) {
   options.validate();
   checkSizes(factors, reflectance, emission, by_lights, bands, names);
   checkMaterials(reflectance, emission, bands, names);
@@ -142,9 +137,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   Solution solution;
   solution.bands = bands;
   SolveSummary& summary = solution.summary;
-  std::vector<double> given(by_lights.begin(), by_lights.end());
-  for (std::size_t k = 0; k < more.size(); ++k) given[k] += more[k];
-  const std::vector<double> source = sourceOf(reflectance, emission, given);
+  const std::vector<double> source = sourceOf(reflectance, emission, by_lights);
   const BandPlan plan(reflectance, source, bands);
   const System system(*factors.matrix, int(plan.solved().size()), plan.pick(reflectance),
                       plan.pick(source));
@@ -173,7 +166,7 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   }
   if (!factors.matrix->isNonNegative()) raiseFromBelowZero(source, solution);
   const double reflected = normOf(solution.irradiance, factors.matrix->area());
-  for (std::size_t k = 0; k < given.size(); ++k) solution.irradiance[k] += given[k];
+  for (std::size_t k = 0; k < by_lights.size(); ++k) solution.irradiance[k] += by_lights[k];
   summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
   if (summary.irradiance_error) {
     *summary.irradiance_error *= reflected / normOf(solution.irradiance, factors.matrix->area());
@@ -187,19 +180,18 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   return solution;
 }
 
-}  // namespace
-
+/// solve() with irradiance by lights without a surface, N * bands, W/m^2.
 Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
                    std::span<const double> emission, int bands, const SolveOptions& options,
-                   Progress& progress, const PatchNames& names, std::span<const double> by_lights,
-                   std::span<const double> more) {
+                   Progress& progress, const PatchNames& names, std::span<const double> by_lights) {
   const Stopwatch watch;
-  Solution solution = solveUntimed(factors, reflectance, emission, bands, options, progress, names,
-                                   by_lights, more);
+  Solution solution =
+      solveUntimed(factors, reflectance, emission, bands, options, progress, names, by_lights);
   solution.summary.seconds = watch.seconds();
   return solution;
 }
 
+/// Says in the message which lights reach nothing, and how far the others may be off.
 void noteErrorOf(const LightFall& by_lights, SolveSummary& summary) {
   if (!summary.usable()) return;
   for (const std::string& name : by_lights.lost) {
@@ -210,12 +202,16 @@ void noteErrorOf(const LightFall& by_lights, SolveSummary& summary) {
   summary.message += fmt::format("; light of lamps off by about {:.2g}%", 100 * by_lights.error);
 }
 
+}  // namespace
+
+void SolveOptions::validate() const { requireRanges(*this); }
+
 Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group,
                std::span<const std::string> group_names, std::span<const double> sky) {
   Solution solution = solveRows(factors, reflectance, emission, bands, options, progress,
-                                {group, group_names}, skyIrradiance(factors, sky, bands), {});
+                                {group, group_names}, skyIrradiance(factors, sky, bands));
   judgeBalance(factors, emission, solution.summary);
   return solution;
 }
@@ -223,12 +219,11 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
 Solution solve(const FormFactors& factors, const PatchMaterials& materials, const PatchMesh& mesh,
                const SolveOptions& options, Progress& progress) {
   materials.requireSizes(mesh.size());
-  if (mesh.clusters) return ClusterSolve(factors, materials, mesh, options, progress).run();
   const LightFall by_lights =
       LightOnPatches(mesh).all(materials.lights, factors.sky, materials.bands, progress);
   Solution solution =
       solveRows(factors, materials.reflectance, materials.emission, materials.bands, options,
-                progress, {mesh.surface, mesh.surface_names}, by_lights.irradiance, {});
+                progress, {mesh.surface, mesh.surface_names}, by_lights.irradiance);
   noteErrorOf(by_lights, solution.summary);
   judgeBalance(factors, materials.emission, solution.summary);
   return solution;

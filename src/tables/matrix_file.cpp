@@ -79,7 +79,7 @@ MatrixFile readOfResults(const std::string& path) {
   }
   MatrixFile file;
   file.path = path;
-  file.factors = factorsOfUnknowns(made(results.mesh).mesh, made(results.factors));
+  file.factors = factorsOfPatches(made(results.mesh).mesh, made(results.factors));
   return file;
 }
 

@@ -15,19 +15,12 @@ namespace radiosity {
 
 namespace {
 
-/// The surface of each unknown: a cluster has only one.
-std::vector<Index> surfaceOfUnknowns(const PatchMesh& mesh) {
-  std::vector<Index> surface(mesh.unknowns(), 0);
-  for (std::size_t i = 0; i < mesh.size(); ++i) surface[mesh.unknownOf(i)] = mesh.surface[i];
-  return surface;
-}
-
-/// The means by area, for each row, of a value of its unknowns.
+/// The means by area, for each row, of a value of its patches.
 std::vector<double> meansOfRows(std::span<const double> values, std::span<const double> area,
                                 const NamedFactors& rows) {
   std::vector<double> means(rows.size(), 0.0);
   if (values.empty()) return {};
-  for (std::size_t u = 0; u < values.size(); ++u) means[rows.row_of[u]] += area[u] * values[u];
+  for (std::size_t i = 0; i < values.size(); ++i) means[rows.row_of[i]] += area[i] * values[i];
   for (std::size_t a = 0; a < means.size(); ++a) {
     const double total = rows.matrix->area()[a];
     means[a] = total > 0 ? means[a] / total : 0.0;
@@ -35,7 +28,7 @@ std::vector<double> meansOfRows(std::span<const double> values, std::span<const 
   return means;
 }
 
-/// Sums of rows and columns over those that `row_of` gives each unknown.
+/// Sums of rows and columns over those that `row_of` gives each patch.
 NamedFactors summedTo(std::vector<std::string> names, std::vector<Index> row_of,
                       const FormFactors& factors, Progress& progress) {
   NamedFactors result;
@@ -94,7 +87,7 @@ NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
     throw InputError(fmt::format("groups of {} surfaces are given for a mesh of {}",
                                  groups.of_surface.size(), mesh.surface_names.size()));
   }
-  std::vector<Index> row_of = surfaceOfUnknowns(mesh);
+  std::vector<Index> row_of = mesh.surface;
   for (Index& row : row_of) row = groups.of_surface[row];
   return summedTo(groups.names, std::move(row_of), factors, progress);
 }
@@ -102,18 +95,14 @@ NamedFactors factorsBetween(const PatchMesh& mesh, const FormFactors& factors,
 NamedFactors factorsBetweenNodes(const PatchMesh& mesh, const FormFactors& factors,
                                  std::size_t count, Progress& progress) {
   const PatchClusters nodes = clusterPatches(mesh, count, progress);
-  std::vector<Index> row_of(mesh.unknowns(), 0);
-  for (std::size_t i = 0; i < mesh.size(); ++i) row_of[mesh.unknownOf(i)] = nodes.of_patch[i];
-  return summedTo(nodeNames(mesh, nodes), std::move(row_of), factors, progress);
+  return summedTo(nodeNames(mesh, nodes), nodes.of_patch, factors, progress);
 }
 
-NamedFactors factorsOfUnknowns(const PatchMesh& mesh, const FormFactors& factors) {
+NamedFactors factorsOfPatches(const PatchMesh& mesh, const FormFactors& factors) {
   NamedFactors result;
   result.numbered = true;
-  result.names.reserve(mesh.unknowns());
-  for (const Index surface : surfaceOfUnknowns(mesh)) {
-    result.names.push_back(mesh.surface_names[surface]);
-  }
+  result.names.reserve(mesh.size());
+  for (const Index surface : mesh.surface) result.names.push_back(mesh.surface_names[surface]);
   result.matrix = {factors.matrix, &pairsOf(*factors.matrix)};
   result.sky = factors.sky;
   result.backs = factors.backs;
@@ -134,7 +123,7 @@ std::vector<double> emissivities(const NamedFactors& factors, const PatchMesh& m
     double reflected = 0;
     for (std::size_t b = 0; b < bands; ++b) reflected += materials.reflectance[i * bands + b];
     const double share = 1 - reflected / double(bands);
-    absorbed[factors.row_of[mesh.unknownOf(i)]] += mesh.area[i] * share;
+    absorbed[factors.row_of[i]] += mesh.area[i] * share;
   }
   for (std::size_t a = 0; a < absorbed.size(); ++a) {
     const double area = factors.matrix->area()[a];

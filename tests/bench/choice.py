@@ -28,7 +28,6 @@ TOLERANCES = ("1e-2", "1e-3")
 COLUMNS = {  # key: title
     "file": "file",
     "patches": "patches",
-    "unknowns": "unknowns",
     "tolerance": "tolerance",
     "method": "auto took",
     "auto_s": "auto, s",
@@ -79,7 +78,7 @@ class Case:
         faster = min(s for s in (same, other, auto) if s is not None)
         return {"method": method, "auto_s": auto, "same_s": same, "other_s": other,
                 "ratio": auto / faster, "right": auto <= WITHIN * faster,
-                "patches": report["mesh"]["patches"], "unknowns": report["mesh"]["unknowns"]}
+                "patches": report["mesh"]["patches"]}
 
 
 def text(key, value):

@@ -37,7 +37,6 @@ COLUMNS = {  # key: title
     "outcome": "outcome",
     "faces": "faces",
     "patches": "patches",
-    "unknowns": "unknowns",
     "method": "method",
     "mesh_s": "mesh s",
     "plan_s": "plan s",
@@ -121,7 +120,6 @@ def measured(report):
     row = {
         "faces": report.get("scene", {}).get("faces"),
         "patches": mesh.get("patches"),
-        "unknowns": mesh.get("unknowns"),
         "method": factors.get("method"),
         "mesh_s": report.get("stages", {}).get("mesh", {}).get("seconds"),
         "plan_s": factors.get("seconds_plan"),

@@ -38,7 +38,7 @@ STAGES = {"all_s": ("all", "#000000", "o"), "mesh_s": ("meshing", "#E69F00", "s"
           "prepare_s": ("preparing and planning", "#009E73", "^"),
           "factors_s": ("form factors", "#0072B2", "D")}
 COLUMNS = {key: key.replace("_", " ") for key in (
-    "series", "faces", "patches_asked", "polygons", "patches", "unknowns", "method", *STAGES,
+    "series", "faces", "patches_asked", "polygons", "patches", "method", *STAGES,
     "memory_mib", "error")}
 
 
@@ -109,7 +109,7 @@ def measured(report):
     factors, mesh = report["form_factors"], report["mesh"]
     prepare = factors["seconds_plan"] + factors.get("seconds_prepare", 0)
     return {"faces": report["scene"]["faces"], "polygons": mesh["polygons"],
-            "patches": mesh["patches"], "unknowns": mesh["unknowns"], "method": factors["method"],
+            "patches": mesh["patches"], "method": factors["method"],
             "mesh_s": report["stages"]["mesh"]["seconds"], "prepare_s": prepare,
             "factors_s": factors["seconds"] - prepare, "error": factors["error_figure"]}
 
@@ -153,14 +153,14 @@ def text(_, value):
 def draw(folder, rows):
     plt.rcParams.update({"font.size": 9, "svg.hashsalt": "radiosity", "svg.fonttype": "path"})
     figure, grid = plt.subplots(2, 2, figsize=(9, 6), sharey="row", squeeze=False)
-    titles = {"faces": "faces", "unknowns": "patches asked for"}
+    titles = {"faces": "faces", "patches_asked": "patches asked for"}
     for column, (along, title) in enumerate(titles.items()):
         for series, style in (("in the planes", "--"), ("out of the planes", "-"),
                               ("patches", "-")):
             some = [r for r in rows if r["series"] == series]
-            if not some or (series == "patches") != (along == "unknowns"):
+            if not some or (series == "patches") != (along == "patches_asked"):
                 continue
-            x = [r["patches_asked"] if along == "unknowns" else r[along] for r in some]
+            x = [r[along] for r in some]
             for key, (label, colour, mark) in STAGES.items():
                 grid[0][column].loglog(x, [max(r[key], 1e-3) for r in some], style, color=colour,
                                        marker=mark, markersize=4, label=label)

@@ -40,7 +40,6 @@ class EngineerWalk(CliTest):
             self.assertAlmostEqual(float(row["sky"]), float(city[name]["sky"]), delta=1e-2)
 
     def test_nodes_sum_up_to_surfaces(self):
-        # With and without shared unknowns, which stay whole.
         for scene, patches in (("cornell-box-closed", "400"), ("furnished-room", "500")):
             self.run_program("factors", DATA / f"{scene}.obj", "--patches", patches, "--tolerance", "0.05",
                              "-o", "f.h5")

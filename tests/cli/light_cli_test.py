@@ -162,41 +162,17 @@ class KeptStages(CliTest):
 
 
 class WhatCannotBeKept(CliTest):
-    def test_fewer_patches_than_surfaces_are_warned_of(self):
-        # Six planar polygons of two surfaces.
-        run = self.run_program("factors", "box.obj", "--patches", "1")
-        self.assertEqual(run.err, "radiosity: warning: --patches 1 cannot be kept: the scene has 2 "
-                         "surfaces, each at least one unknown; join surfaces in the file, or ask "
-                         "for 2 or more\n")
-        run = self.run_program("factors", "box.obj", "--patches", "6")
-        self.assertEqual(run.err, "")
-
-    def test_patches_beyond_the_request_share_unknowns(self):
+    def test_more_planar_pieces_than_patches_asked_for_are_noted(self):
+        # Six planar polygons of two surfaces: one patch each.
         run = self.run_program("solve", "box.obj", "--patches", "4", "-o", "s.h5")
         self.assertEqual(run.err, "")
-        self.assertIn("6 patches share 4 unknowns: 4 were asked for", run.out)
-        self.assertIn("for 4 clusters", run.out)
+        self.assertIn("6 patches: 4 were asked for, but there are 6 planar pieces", run.out)
         with h5py.File(self.folder / "s.h5") as file:
-            self.assertEqual(list(file["form_factors/shape"]), [4, 4])
-            of_patch = file["form_factors/of_patch"][()]
-            self.assertEqual(sorted(set(of_patch)), [0, 1, 2, 3])
+            self.assertEqual(list(file["form_factors/shape"]), [6, 6])
             self.assertEqual(file["solution/radiosity"].shape, (6, 3))
-            self.assertEqual(file["mesh/report"].attrs["clusters"], 4)
-            # Each patch has an irradiance of its own, also where it shares the unknown.
-            irradiance = file["solution/irradiance"][()]
-            self.assertEqual(irradiance.shape, (6, 3))
-            self.assertTrue((irradiance >= 0).all())
-            self.assertGreater(len(set(map(tuple, irradiance))), 4)
-        # Results in the file are reused, drawn and listed.
-        report = self.report("render", "s.h5", "--show", "row-sum", "-o", "p.png")
-        self.assertEqual(report["stages"]["form_factors"]["action"], "reused")
-        self.assertIn("cluster of patch 5",
-                      self.run_program("render", "s.h5", "--show", "form-factor:5", "-o", "p.png").out)
+        self.assertNotIn("were asked for", self.run_program("factors", "box.obj", "--patches", "6").out)
         self.run_program("factors", "s.h5", "-o", "f.mtx")
-        self.assertEqual(scipy.io.mmread(self.folder / "f.mtx").shape, (4, 4))
-        report = self.report("mesh", "box.obj", "--patches", "4")
-        self.assertEqual([report["mesh"][key] for key in ("patches", "unknowns", "clusters")],
-                         [6, 4, 4])
+        self.assertEqual(scipy.io.mmread(self.folder / "f.mtx").shape, (6, 6))
 
     def test_a_matrix_market_file_holds_the_values_of_the_results_file(self):
         # Exact form factors are stored once a pair; closed, their rows sum to 1 in either file.

@@ -89,14 +89,6 @@ class MpiTest(CliTest):
                     self.assert_same_factors("one.h5", "many.h5")
                     os.remove(self.folder / "many.h5")
 
-    def test_unknowns_that_patches_share_have_the_same_bits_and_light(self):
-        options = ["solve", str(DATA / "curved.obj"), "--patches", "150", "--tolerance", "5e-2",
-                   "--solve-tolerance", "1e-14"]
-        self.run_program(*options, "--method", "rays", "--solver", "cg", "-o", "one.h5")
-        self.mpirun(3, *options, "--solver", "petsc", "-o", "many.h5")  # rays by themselves
-        self.assert_same_factors("one.h5", "many.h5")
-        self.assert_same_radiosity("one.h5", "many.h5")
-
     def test_raw_rows_of_hemicubes_are_solved(self):
         options = ["solve", ROOMS, "--patches", "250", "--method", "hemicube", "--resolution", "64",
                    "--solve-tolerance", "1e-14"]

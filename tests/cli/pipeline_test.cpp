@@ -97,10 +97,7 @@ TEST(Pipeline, EveryClosedSceneIsAFurnace) {
     double worst_row = 0;
     for (double sum : lit.factors.fronts) worst_row = std::max(worst_row, std::abs(sum - 1));
     EXPECT_LT(worst_row, 1e-12) << name;
-    // If patches share unknowns, their own light rests on 16,384 rays a cluster. A ray that slips
-    // through an edge by rounding finds the dark and moves a value by some 1e-4 of it.
-    const double rounding = lit.meshed.mesh.clusters ? 1e-3 : 1e-10;
-    for (double b : lit.solution.radiosity) ASSERT_NEAR(b, 10.0, rounding) << name;
+    for (double b : lit.solution.radiosity) ASSERT_NEAR(b, 10.0, 1e-10) << name;
   }
 }
 

@@ -175,7 +175,7 @@ TEST(Cut, TakesExactRowsOfEmitters) {
   const PatchMesh mesh = test::meshOf(scene, 400);
   const FormFactors truth = test::computed(mesh, test::exactly(1e-3));
   FormFactorOptions options = byCuts(0.05);
-  options.exact_rows = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  options.exact_rows = emittingPatches(mesh, patchMaterials(scene, mesh));
   ASSERT_FALSE(options.exact_rows.empty());
   std::vector<double> lamp(mesh.size(), 0.0);
   for (const Index i : options.exact_rows) lamp[i] = 1;

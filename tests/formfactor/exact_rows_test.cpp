@@ -57,7 +57,7 @@ class ExactRows : public testing::TestWithParam<const char*> {};
 TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 300);
-  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const std::vector<Index> emitters = emittingPatches(mesh, patchMaterials(scene, mesh));
   ASSERT_FALSE(emitters.empty());
   const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
   constexpr double kTolerance = 5e-2;
@@ -83,7 +83,7 @@ TEST_P(ExactRows, GiveDirectLightThatRaysAloneMiss) {
 TEST_P(ExactRows, GiveDirectLightThatHemicubesMiss) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 300);
-  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const std::vector<Index> emitters = emittingPatches(mesh, patchMaterials(scene, mesh));
   const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
   const FormFactors seen = byHemicubes(mesh, {});
   const FormFactors both = byHemicubes(mesh, emitters);
@@ -113,7 +113,7 @@ TEST_P(ExactRows, GiveDirectLightThatHemicubesMiss) {
 TEST_P(ExactRows, StayExactInAMergedMatrix) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 300);
-  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const std::vector<Index> emitters = emittingPatches(mesh, patchMaterials(scene, mesh));
   FormFactorOptions options;
   options.method = FormFactorMethod::hemicube;
   options.resolution = 64;
@@ -132,7 +132,7 @@ TEST_P(ExactRows, StayExactInAMergedMatrix) {
 TEST_P(ExactRows, OfTheExactMethodGiveDimReceiversTheirLight) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 300);
-  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const std::vector<Index> emitters = emittingPatches(mesh, patchMaterials(scene, mesh));
   const FormFactors truth = test::computed(mesh, test::exactly(1e-5));
   FormFactorOptions options = test::exactly(1e-3);
   const FormFactors beside_rows = test::computed(mesh, options);
@@ -145,7 +145,7 @@ TEST_P(ExactRows, OfTheExactMethodGiveDimReceiversTheirLight) {
 TEST_P(ExactRows, KeepClosureAndReciprocity) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 300);
-  const FormFactors f = byRays(mesh, emittingUnknowns(mesh, patchMaterials(scene, mesh)), 2e-2);
+  const FormFactors f = byRays(mesh, emittingPatches(mesh, patchMaterials(scene, mesh)), 2e-2);
   EXPECT_TRUE(f.matrix->isSymmetric());
   const std::vector<double> sums = f.matrix->rowSums();
   for (std::size_t i = 0; i < mesh.size(); ++i) {
@@ -163,47 +163,6 @@ TEST_P(ExactRows, KeepClosureAndReciprocity) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ExactRows,
                          testing::Values("cornell-box-closed", "two-rooms", "cornell-box"));
-
-TEST(ExactRowsOfClusters, AreSumsOverTheirPatches) {
-  PatchMesh mesh = test::roomWithBlock(4).build();
-  const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
-  PatchClusters clusters;  // three patches each, of any surfaces
-  for (Index i = 0; i < mesh.size(); ++i) {
-    if (i % 3 == 0) clusters.begin.push_back(clusters.patches.size());
-    clusters.patches.push_back(i);
-    clusters.of_patch.push_back(Index(clusters.begin.size() - 1));
-  }
-  clusters.begin.push_back(clusters.patches.size());
-  mesh.clusters = clusters;
-  const std::vector<Index> wanted = {1, 7, Index(clusters.size() - 1)};
-  const FormFactors f = byRays(mesh, wanted, 5e-2);
-  const FormFactors by_hemicubes = byHemicubes(mesh, wanted);
-  EXPECT_EQ(by_hemicubes.report.exact_rows, 9u);  // of patches
-  for (const Index w : wanted) {
-    double area = 0;
-    std::vector<double> row(clusters.size(), 0.0);
-    for (const Index i : clusters.patchesOf(w)) {
-      area += mesh.area[i];
-      pairsOf(*truth.matrix).forRow(i, [&](Index j, double value) {
-        row[clusters.of_patch[j]] += mesh.area[i] * value;
-      });
-    }
-    double square = 0;
-    for (std::size_t l = 0; l < row.size(); ++l) {
-      square += std::pow(f.matrix->at(w, l) - row[l] / area, 2);
-    }
-    // The truth is good to 1e-4 of the mean form factor a pair; patches are 3 a cluster.
-    EXPECT_LT(std::sqrt(square), f.error[w] + 3e-4 / std::sqrt(double(mesh.size())));
-    EXPECT_LT(f.error[w], 0.1 * 5e-2);  // of rays it would be 5e-2 of the norm, .3 or so
-    double hemicube_square = 0;
-    double norm = 0;
-    for (std::size_t l = 0; l < row.size(); ++l) {
-      hemicube_square += std::pow(by_hemicubes.matrix->at(w, l) - row[l] / area, 2);
-      norm += std::pow(row[l] / area, 2);
-    }
-    EXPECT_LT(std::sqrt(hemicube_square / norm), 1e-3);  // what exact is to hold in a row
-  }
-}
 
 TEST(ExactRowsOfTheOpen, TellSkyAndBacksFromFronts) {
   // A floor below a smaller plate that turns its black back down, in the open.
@@ -238,7 +197,7 @@ TEST(ExactRowsOfARoom, HaveTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(ExactRowsOptions, AreRefusedUnlessTheyAreDistinctUnknowns) {
+TEST(ExactRowsOptions, AreRefusedUnlessTheyAreDistinctPatches) {
   const PatchMesh mesh = test::roomWithBlock(2).build();
   EXPECT_THROW(byRays(mesh, {Index(mesh.size())}, 5e-2), InputError);
   EXPECT_THROW(byRays(mesh, {3, 3}, 5e-2), InputError);

@@ -489,8 +489,7 @@ TEST(ExactStress, NoiseOnCornersLeavesNoPatchOfRounding) {
       MeshOptions options;
       options.patches = 80;
       Progress silent;
-      PatchMesh mesh = meshScene(noisyRoom(noise, seed), options, silent).mesh;
-      mesh.clusters.reset();  // a row for each patch
+      const PatchMesh mesh = meshScene(noisyRoom(noise, seed), options, silent).mesh;
       const FormFactors f = compute(mesh, FormFactorMethod::exact);
       double area = 0;
       double seen = 0;

@@ -267,9 +267,9 @@ TEST(GpuFallback, ProcessesOfOneRunDrawByTheProcessor) {
   EXPECT_EQ(eye, nullptr);
   FormFactorOptions options = smallHemicubes();
   options.eye = EyeChoice::automatic;
-  EXPECT_NO_THROW(requireShareable(mesh, options));
+  EXPECT_NO_THROW(requireShareable(options));
   options.eye = EyeChoice::gl;
-  EXPECT_THROW(requireShareable(mesh, options), InputError);
+  EXPECT_THROW(requireShareable(options), InputError);
 }
 
 }  // namespace

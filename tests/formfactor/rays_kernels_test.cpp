@@ -21,28 +21,17 @@ namespace {
 
 constexpr std::size_t kRays = 512;
 
-/// A bent roof of parallelograms and triangles, all one unknown, over a floor with a patch a cell
-/// and triangles that share cells.
+/// A tilted roof, a patch of three triangles, over a floor with a patch a cell and triangles that
+/// share cells.
 PatchMesh roofOverFloor() {
   test::MeshBuilder builder;
-  builder.grid("roof", {0, 0, 2}, {0, 1, 0.25}, {1, 0, 0});
-  builder.polygon("roof", {{{1, 0, 2}, {1, 1, 2.25}, {2, 0, 2.5}}});
-  builder.polygon("roof", {{{0, 1, 2.25}, {1, 2, 2}, {1, 1, 2.25}}});
+  builder.polygon("roof", {{{0, 0, 2}, {0, 1, 2.25}, {1, 2, 2.5}, {2, 1, 2.25}, {1.5, 0, 2}}});
   builder.grid("floor", {-4, -4, 0}, {4, 0, 0}, {0, 8, 0}, 3, 5);
   builder.polygon("floor", {{{0, -4, 0}, {4, -4, 0}, {4, 4, 0}, {0, 4, 0}}},
                   {{{0, -4, 0}, {4, -4, 0}, {0, 1, 0}},
                    {{4, -4, 0}, {4, 4, 0}, {0, 1, 0}},
                    {{4, 4, 0}, {0, 4, 0}, {0, 1, 0}}});
-  PatchMesh mesh = builder.build();
-  PatchClusters clusters;
-  for (Index i = 0; i < mesh.size(); ++i) {
-    if (i == 0 || mesh.surface[i] != 0) clusters.begin.push_back(i);
-    clusters.patches.push_back(i);
-    clusters.of_patch.push_back(Index(clusters.begin.size() - 1));
-  }
-  clusters.begin.push_back(mesh.size());
-  mesh.clusters = clusters;
-  return mesh;
+  return builder.build();
 }
 
 struct Rays {
@@ -98,18 +87,13 @@ class RayKernelsTest : public testing::Test {
   RayCaster caster_{mesh_};
   ViewScene scene_{mesh_};
   EmbreeScene embree_{scene_, mesh_};
-  RayTargets targets_{scene_, embree_, [](std::uint32_t item) { return item; }};
+  RayTargets targets_{scene_, embree_};
   RayOrigins roof_ = caster_.origins(0);
-  RayOrigins floor_ = caster_.origins(caster_.fronts() - 1);
+  RayOrigins cell_ = caster_.origins(1);  // a parallelogram
 
-  /// One for each frame, of different sizes: from the horizon up, to the zenith, and in between.
-  std::vector<DirectionWindow> windowsOfRoof() const {
-    std::vector<DirectionWindow> windows;
-    for (std::size_t k = 0; k < roof_.frames(); ++k) {
-      const double low = k % 3 == 0 ? 0.0 : k % 3 == 1 ? 0.9 : 0.4;
-      windows.push_back({low, k % 3 == 1 ? 1.0 : low + 0.3, 3 - double(k), k == 0 ? 0.1 : 2.5});
-    }
-    return windows;
+  /// From the horizon up, in between, and to the zenith.
+  static std::vector<DirectionWindow> someWindows() {
+    return {{0, 0.3, 3, 0.1}, {0.4, 0.7, 1, 2.5}, {0.9, 1, 2, 2.5}};
   }
 
   /// Aimed rays of roof and floor by turns, sent by Embree. Lanes from `lanes` on are not traced.
@@ -130,30 +114,28 @@ class RayKernelsTest : public testing::Test {
   }
 };
 
-/// Rays of each frame go into its window, spread evenly over elevations' squared sines and
-/// azimuths.
-TEST_F(RayKernelsTest, AimedRaysStayInTheirWindows) {
-  const std::vector<DirectionWindow> windows = windowsOfRoof();
-  RayOrigins aimed = roof_;
-  const double share = aimed.aim(windows);
-  EXPECT_NEAR(share, 0.3 * 2.5 / std::numbers::pi, 1e-6);
-  Rays rays(aimed.parts());
-  rayKernels().aim(aimed, kRays, rays.arrays());
-  for (std::size_t k = 0; k < kRays; ++k) {
-    const std::uint32_t of = aimed.part(std::uint32_t(rays.part[k])).frame;
-    const RayFrame& before = roof_.frame(of);  // azimuths of windows are those of its axes
-    const Vec3 along = rays.along(k);
-    EXPECT_NEAR(glm::length(along), 1, 5e-7);
-    const double height = glm::dot(along, Vec3(before.z));
-    const double turn = std::remainder(
-        std::atan2(glm::dot(along, Vec3(before.y)), glm::dot(along, Vec3(before.x))) -
-            windows[of].centre,
-        2 * std::numbers::pi);
-    const double low = std::min(windows[of].low, 0.7);
-    EXPECT_NEAR(height * height, low + 0.3 * double(rays.points[2][k]), 1e-6);
-    // Next to the normal the azimuth is nothing that single precision knows.
-    EXPECT_NEAR(turn, 2.5 * (2 * double(rays.points[3][k]) - 1),
-                1e-6 / std::sqrt(std::max(1e-9, 1 - height * height)));
+/// Rays are spread evenly over elevations' squared sines and azimuths.
+TEST_F(RayKernelsTest, AimedRaysStayInTheirWindow) {
+  for (const DirectionWindow& window : someWindows()) {
+    RayOrigins aimed = roof_;
+    const double range = window.high - window.low;
+    EXPECT_NEAR(aimed.aim(window), range * window.half / std::numbers::pi, 1e-6);
+    Rays rays(aimed.parts());
+    rayKernels().aim(aimed, kRays, rays.arrays());
+    const RayFrame& before = roof_.frame();  // azimuths of windows are those of its axes
+    for (std::size_t k = 0; k < kRays; ++k) {
+      const Vec3 along = rays.along(k);
+      EXPECT_NEAR(glm::length(along), 1, 5e-7);
+      const double height = glm::dot(along, Vec3(before.z));
+      const double turn = std::remainder(
+          std::atan2(glm::dot(along, Vec3(before.y)), glm::dot(along, Vec3(before.x))) -
+              window.centre,
+          2 * std::numbers::pi);
+      EXPECT_NEAR(height * height, window.low + range * double(rays.points[2][k]), 1e-6);
+      // Next to the normal the azimuth is nothing that single precision knows.
+      EXPECT_NEAR(turn, window.half * (2 * double(rays.points[3][k]) - 1),
+                  1e-6 / std::sqrt(std::max(1e-9, 1 - height * height)));
+    }
   }
 }
 
@@ -184,7 +166,7 @@ TEST_F(RayKernelsTest, EveryInstructionSetGivesTheSameBits) {
     std::vector<float> scrambled = std::vector<float>(kRays + 1, -1.0F);
     std::array<std::vector<float>, 2> disc = {std::vector<float>(kRays), std::vector<float>(kRays)};
     Rays roof;
-    Rays floor;
+    Rays cell;
     Rays aimed;
     std::vector<std::uint32_t> items = {};
     std::vector<float> places = {};
@@ -193,19 +175,19 @@ TEST_F(RayKernelsTest, EveryInstructionSetGivesTheSameBits) {
   std::mt19937 random(3);
   for (std::uint32_t& bits : first) bits = std::uint32_t(random());
   RayOrigins aimed = roof_;
-  aimed.aim(windowsOfRoof());
+  aimed.aim(someWindows()[1]);
   std::unique_ptr<Sample> scalar;
   std::vector<std::unique_ptr<Sample>> samples;
   forEveryTarget([&](const RayKernels& kernels) {
     auto sample = std::make_unique<Sample>(
-        Sample{.roof = Rays(roof_.parts()), .floor = Rays(1), .aimed = Rays(roof_.parts())});
+        Sample{.roof = Rays(roof_.parts()), .cell = Rays(1), .aimed = Rays(roof_.parts())});
     kernels.scramble(first.data(), kRays - 3, 0x12345u, 99, sample->scrambled.data());
     kernels.toDisc(sample->roof.points[2].data(), sample->roof.points[3].data(), kRays,
                    sample->disc[0].data(), sample->disc[1].data());
     kernels.aim(roof_, kRays, sample->roof.arrays());
-    kernels.aim(floor_, kRays, sample->floor.arrays());
+    kernels.aim(cell_, kRays, sample->cell.arrays());
     kernels.aim(aimed, kRays, sample->aimed.arrays());
-    for (Rays* rays : {&sample->roof, &sample->floor}) {
+    for (Rays* rays : {&sample->roof, &sample->cell}) {
       for (std::size_t k = 0; k < kRays; k += kRayLanes) {
         const int lanes = kRayLanes - int(k / kRayLanes % 3);
         const RTCRayHit16 hit = packet(kernels, *rays, k, lanes);
@@ -230,7 +212,7 @@ TEST_F(RayKernelsTest, EveryInstructionSetGivesTheSameBits) {
     EXPECT_EQ(sample->scrambled, scalar->scrambled);
     EXPECT_EQ(sample->disc, scalar->disc);
     EXPECT_TRUE(sample->roof == scalar->roof);
-    EXPECT_TRUE(sample->floor == scalar->floor);
+    EXPECT_TRUE(sample->cell == scalar->cell);
     EXPECT_TRUE(sample->aimed == scalar->aimed);
     EXPECT_EQ(sample->items, scalar->items);
     EXPECT_EQ(sample->places, scalar->places);
@@ -274,34 +256,35 @@ TEST_F(RayKernelsTest, SquareGoesToDiscByTheConcentricMap) {
   });
 }
 
-TEST_F(RayKernelsTest, RaysLeaveTheirPartsByTheirFrames) {
+TEST_F(RayKernelsTest, RaysLeaveTheirPartsByTheirFrame) {
   forEveryTarget([&](const RayKernels& kernels) {
-    Rays rays(roof_.parts());
-    kernels.aim(roof_, kRays, rays.arrays());
-    std::vector<float> u(kRays);
-    std::vector<float> v(kRays);
-    kernels.toDisc(rays.points[2].data(), rays.points[3].data(), kRays, u.data(), v.data());
-    ASSERT_FALSE(roof_.isPlanar());
-    for (std::size_t k = 0; k < kRays; ++k) {
-      const RayOrigins::Part& part = roof_.part(std::uint32_t(rays.part[k]));
-      const RayFrame& frame = roof_.frame(part.frame);
-      const double x = part.parallelogram != 0 ? double(rays.points[0][k])
-                                               : std::sqrt(double(rays.points[0][k]));
-      const double y = double(rays.points[1][k]);
-      const Vec3 on_part =
-          part.parallelogram != 0
-              ? Vec3(part.corner) + x * Vec3(part.ab) + y * Vec3(part.ac)
-              : Vec3(part.corner) + x * (1 - y) * Vec3(part.ab) + x * y * Vec3(part.ac);
-      const Vec3 above = rays.leaves(k) - on_part;
-      // Roundings of single precision, in a scene of size 1.
-      EXPECT_LT(glm::length(above - double(kRayLift) * Vec3(frame.z)), 3e-7) << k;
-      const double w = std::sqrt(std::max(0.0, 1 - double(u[k]) * u[k] - double(v[k]) * v[k]));
-      const Vec3 along =
-          double(u[k]) * Vec3(frame.x) + double(v[k]) * Vec3(frame.y) + w * Vec3(frame.z);
-      EXPECT_LT(glm::length(rays.along(k) - along), 1e-3)
-          << k;  // at the horizon w is a root of 1e-7
-      EXPECT_NEAR(glm::length(rays.along(k)), 1, 1e-6) << k;
-      EXPECT_LT(rays.cell[k], kDirectionCells * kDirectionCells) << k;
+    for (const RayOrigins& origins : {roof_, cell_}) {
+      Rays rays(origins.parts());
+      kernels.aim(origins, kRays, rays.arrays());
+      std::vector<float> u(kRays);
+      std::vector<float> v(kRays);
+      kernels.toDisc(rays.points[2].data(), rays.points[3].data(), kRays, u.data(), v.data());
+      const RayFrame& frame = origins.frame();
+      for (std::size_t k = 0; k < kRays; ++k) {
+        const RayOrigins::Part& part = origins.part(std::uint32_t(rays.part[k]));
+        const double x = part.parallelogram != 0 ? double(rays.points[0][k])
+                                                 : std::sqrt(double(rays.points[0][k]));
+        const double y = double(rays.points[1][k]);
+        const Vec3 on_part =
+            part.parallelogram != 0
+                ? Vec3(part.corner) + x * Vec3(part.ab) + y * Vec3(part.ac)
+                : Vec3(part.corner) + x * (1 - y) * Vec3(part.ab) + x * y * Vec3(part.ac);
+        const Vec3 above = rays.leaves(k) - on_part;
+        // Roundings of single precision, in a scene of size 1.
+        EXPECT_LT(glm::length(above - double(kRayLift) * Vec3(frame.z)), 3e-7) << k;
+        const double w = std::sqrt(std::max(0.0, 1 - double(u[k]) * u[k] - double(v[k]) * v[k]));
+        const Vec3 along =
+            double(u[k]) * Vec3(frame.x) + double(v[k]) * Vec3(frame.y) + w * Vec3(frame.z);
+        EXPECT_LT(glm::length(rays.along(k) - along), 1e-3)
+            << k;  // at the horizon w is a root of 1e-7
+        EXPECT_NEAR(glm::length(rays.along(k)), 1, 1e-6) << k;
+        EXPECT_LT(rays.cell[k], kDirectionCells * kDirectionCells) << k;
+      }
     }
   });
 }

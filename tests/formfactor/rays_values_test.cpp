@@ -102,7 +102,6 @@ class RaysAgainstExact : public testing::TestWithParam<const char*> {};
 
 TEST_P(RaysAgainstExact, RowsKeepTheToleranceAndTheirFigures) {
   const PatchMesh mesh = test::meshOf(test::dataScene(GetParam()), 300);
-  ASSERT_FALSE(mesh.clusters);
   const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
   constexpr double kTolerance = 2e-2;
   const FormFactors f = test::computed(mesh, byRays(kTolerance));
@@ -299,43 +298,6 @@ TEST(Rays, GoOnUntilATighterToleranceIsMet) {
     EXPECT_LT(found.all, before);
     before = found.all;
   }
-}
-
-TEST(Rays, OfClustersAreSumsOverTheirPatches) {
-  PatchMesh mesh = test::roomWithBlock(4).build();
-  const FormFactors truth = test::computed(mesh, test::exactly(1e-4));
-  PatchClusters clusters;  // pairs of patches that follow each other on a surface
-  clusters.begin.push_back(0);
-  for (Index i = 0; i < mesh.size(); ++i) {
-    const bool joins =
-        i > 0 && mesh.surface[i] == mesh.surface[i - 1] && clusters.patches.size() % 2;
-    if (!joins && i > 0) clusters.begin.push_back(clusters.patches.size());
-    clusters.patches.push_back(i);
-    clusters.of_patch.push_back(Index(clusters.begin.size() - 1));
-  }
-  clusters.begin.push_back(clusters.patches.size());
-  mesh.clusters = clusters;
-  const FormFactors f = test::computed(mesh, byRays(5e-3));
-  ASSERT_EQ(f.matrix->size(), clusters.size());
-  double squares = 0;
-  double norms = 0;
-  for (std::size_t k = 0; k < clusters.size(); ++k) {
-    std::vector<double> row(clusters.size(), 0.0);
-    double area = 0;
-    for (const Index i : clusters.patchesOf(k)) area += mesh.area[i];
-    for (const Index i : clusters.patchesOf(k)) {
-      pairsOf(*truth.matrix).forRow(i, [&](Index j, double value) {
-        row[clusters.of_patch[j]] += mesh.area[i] * value / area;
-      });
-    }
-    for (std::size_t l = 0; l < row.size(); ++l) {
-      squares += area * std::pow(f.matrix->at(k, l) - row[l], 2);
-      norms += area * row[l] * row[l];
-    }
-  }
-  // The tolerance of a row is a root mean square; that of all rows together is good to some per
-  // cent.
-  EXPECT_LT(std::sqrt(squares / norms), 1.1 * 5e-3);
 }
 
 /// Rays that grow as the inverse square of the tolerance.

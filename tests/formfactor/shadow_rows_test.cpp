@@ -28,16 +28,15 @@ class ShadowRowsOf : public testing::TestWithParam<const char*> {};
 TEST_P(ShadowRowsOf, AScene) {
   const Scene scene = test::dataScene(GetParam());
   const PatchMesh mesh = test::meshOf(scene, 1000);
-  ASSERT_FALSE(mesh.clusters);
-  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const std::vector<Index> emitters = emittingPatches(mesh, patchMaterials(scene, mesh));
   ASSERT_FALSE(emitters.empty());
   const FormFactors truth = test::computed(mesh, test::exactly(1e-2));
   std::vector<double> seen(mesh.size(), 0.0);
   std::vector<double> squares(mesh.size(), 0.0);
   for (const KnownRow& row : shadowRows(mesh, emitters)) {
-    for (const auto& [unknown, exchange, error] : row.entries) {
-      seen[unknown] += exchange / mesh.area[unknown];
-      squares[unknown] += error * error / (mesh.area[unknown] * mesh.area[unknown]);
+    for (const auto& [patch, exchange, error] : row.entries) {
+      seen[patch] += exchange / mesh.area[patch];
+      squares[patch] += error * error / (mesh.area[patch] * mesh.area[patch]);
     }
   }
   double off = 0;
@@ -62,20 +61,20 @@ INSTANTIATE_TEST_SUITE_P(ShadowRows, ShadowRowsOf,
 TEST(ShadowRows, OfALampHaveAllThatItSees) {
   const Scene scene = test::dataScene("cornell-box-closed");
   const PatchMesh mesh = test::meshOf(scene, 600);
-  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const std::vector<Index> emitters = emittingPatches(mesh, patchMaterials(scene, mesh));
   for (const KnownRow& row : shadowRows(mesh, emitters)) {
     double sum = 0;
     for (const KnownExchange& entry : row.entries) sum += entry.exchange;
-    for (const SeenBack& back : row.backs) sum += back.share * mesh.area[row.unknown];
+    for (const SeenBack& back : row.backs) sum += back.share * mesh.area[row.patch];
     // Of some 600 patches, each off by 2% of what it sees of all emitters at most.
-    EXPECT_NEAR(sum / mesh.area[row.unknown], 1, 0.01);
+    EXPECT_NEAR(sum / mesh.area[row.patch], 1, 0.01);
   }
 }
 
 TEST(ShadowRows, HaveTheSameBitsForAnyThreads) {
   const Scene scene = test::dataScene("cluttered");
   const PatchMesh mesh = test::meshOf(scene, 300);
-  const std::vector<Index> emitters = emittingUnknowns(mesh, patchMaterials(scene, mesh));
+  const std::vector<Index> emitters = emittingPatches(mesh, patchMaterials(scene, mesh));
   setThreads(1);
   const std::vector<KnownRow> one = shadowRows(mesh, emitters);
   setThreads(0);
@@ -115,7 +114,7 @@ TEST(ShadowRows, OfAHalfShadowAreNotBiased) {
     std::vector<double> seen(mesh.size(), 0.0);
     for (const KnownRow& row : shadowRows(mesh, emitters)) {
       for (const KnownExchange& entry : row.entries) {
-        seen[entry.unknown] += entry.exchange / mesh.area[entry.unknown];
+        seen[entry.patch] += entry.exchange / mesh.area[entry.patch];
       }
     }
     double sum = 0;

@@ -184,8 +184,8 @@ TEST(GpuEye, CutsATriangleOnceAtAVertexBesideItsCorner) {
 }
 
 TEST(GpuEye, ShowsTheProcessorsPixelsInAModelOfOthers) {
-  // An engine of many small curved parts, of Debian's package of models for Assimp's tests: patches
-  // share unknowns, most polygons are a few pixels wide.
+  // An engine of many small curved parts, of Debian's package of models for Assimp's tests: most
+  // polygons are a few pixels wide.
   const PatchMesh mesh =
       meshOf("/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb", 300);
   BothEyes both(mesh, 96);

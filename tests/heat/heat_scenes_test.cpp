@@ -1,4 +1,4 @@
-// Radiative heat exchange in meshed scenes: concentric spheres, sheets, shared unknowns, files.
+// Radiative heat exchange in meshed scenes: concentric spheres, sheets, files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -164,31 +164,6 @@ TEST(HeatScenes, BothSidesOfASheetHaveOneTemperature) {
   EXPECT_GT(backs, 0u);
   EXPECT_NEAR(s.surfaces[3].radiated, 0, 1e-6 * s.surfaces[1].radiated);
   EXPECT_NEAR(s.surfaces[1].radiated / -s.surfaces[2].radiated, 1, 1e-2);
-}
-
-// A box of few unknowns that its patches share, beside one of its patches: surfaces agree.
-TEST(HeatScenes, SharedUnknownsGiveTheFiguresOfSurfaces) {
-  Triangles t = boxWithSheet(false);
-  const Index ball = t.surface("ball");
-  const std::size_t before = t.vertices.size();
-  t.sphere(ball, .2, 2, false);
-  for (std::size_t k = before; k < t.vertices.size(); ++k) t.vertices[k] += Vec3(.5);
-  HeatCondition heated = test::condition("ball", .7);
-  heated.power = 500;
-  const HeatConditions conditions =
-      inOrder({test::condition("walls", .5), test::at("floor", .9, 400),
-               test::at("ceiling", .3, 300), heated});
-  const Solved fine = solved(t.scene(), conditions, {.patches = 800});
-  const Solved shared = solved(t.scene(), conditions, {.patches = 120});
-  ASSERT_TRUE(shared.mesh.clusters);
-  ASSERT_FALSE(fine.mesh.clusters);
-  EXPECT_EQ(shared.heat.temperature.size(), shared.mesh.size());
-  EXPECT_NEAR(shared.surfaces[3].radiated, 500, 1e-6);
-  for (std::size_t i = 1; i < 4; ++i) {
-    // Coarse unknowns and rays to 1e-2, relative to the exchanged power.
-    EXPECT_NEAR(shared.surfaces[i].radiated, fine.surfaces[i].radiated, .05 * 500);
-    EXPECT_NEAR(shared.surfaces[i].temperature / fine.surfaces[i].temperature, 1, .02);
-  }
 }
 
 // An adiabatic plate 3 mm above one at 77 K, both black and 1 m wide, under a sky of 300 K. The gap

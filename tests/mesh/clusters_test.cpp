@@ -1,4 +1,4 @@
-// Patches that share unknowns: as many clusters as asked for, each patch in one, of one surface.
+// Clusters of patches: as many as asked for, each patch in one, of one surface.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,18 +25,35 @@ MeshResult meshed(const Scene& scene, std::size_t patches) {
   return meshScene(scene, options, progress);
 }
 
-/// Both sides counted once.
-std::size_t unknownsOfFronts(const PatchMesh& mesh) {
-  std::set<std::size_t> unknowns;
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    if (mesh.side[i] == 0) unknowns.insert(mesh.unknownOf(i));
-  }
-  return unknowns.size();
+PatchClusters clustered(const PatchMesh& mesh, std::size_t wanted) {
+  Progress progress;
+  return clusterPatches(mesh, wanted, progress);
 }
 
-void expectPartition(const PatchMesh& mesh) {
-  ASSERT_TRUE(mesh.clusters);
-  const PatchClusters& clusters = *mesh.clusters;
+/// Both sides counted once.
+std::size_t clustersOfFronts(const PatchMesh& mesh, const PatchClusters& clusters) {
+  std::set<Index> found;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    if (mesh.side[i] == 0) found.insert(clusters.of_patch[i]);
+  }
+  return found.size();
+}
+
+/// Degrees: the largest angle between the normal of a patch and the mean of its cluster.
+double widestCone(const PatchMesh& mesh, const PatchClusters& clusters) {
+  double widest = 0;
+  for (std::size_t c = 0; c < clusters.size(); ++c) {
+    Vec3 mean(0.0);
+    for (const Index i : clusters.patchesOf(c)) mean += mesh.area[i] * mesh.normal[i];
+    for (const Index i : clusters.patchesOf(c)) {
+      const Vec3& n = mesh.normal[i];
+      widest = std::max(widest, std::atan2(glm::length(glm::cross(mean, n)), glm::dot(mean, n)));
+    }
+  }
+  return widest * 180 / std::numbers::pi;
+}
+
+void expectPartition(const PatchMesh& mesh, const PatchClusters& clusters) {
   ASSERT_EQ(clusters.of_patch.size(), mesh.size());
   ASSERT_EQ(clusters.patches.size(), mesh.size());
   double area = 0;
@@ -166,16 +183,13 @@ class Clusters : public testing::TestWithParam<Named> {};
 TEST_P(Clusters, AreAsManyAsRequested) {
   const auto& [name, scene, patches] = GetParam();
   for (const Scene& s : {scene(), turned(scene())}) {
-    const auto [mesh, report] = meshed(s, patches);
-    ASSERT_GT(double(mesh.frontCount()), 1.2 * double(patches)) << "the scene has to have too many";
-    expectPartition(mesh);
-    EXPECT_EQ(unknownsOfFronts(mesh), patches);
-    EXPECT_EQ(report.clusters, mesh.unknowns());
-    EXPECT_TRUE(std::ranges::any_of(report.notes, [](const Note& note) {
-      return note.text.find("unknowns") != std::string::npos;
-    }));
+    const PatchMesh mesh = meshed(s, patches).mesh;
+    ASSERT_GT(double(mesh.frontCount()), 1.2 * double(patches)) << "the scene has to have more";
+    const PatchClusters clusters = clustered(mesh, patches);
+    expectPartition(mesh, clusters);
+    EXPECT_EQ(clustersOfFronts(mesh, clusters), patches);
     // A second run gives the same.
-    EXPECT_EQ(meshed(s, patches).mesh.clusters->of_patch, mesh.clusters->of_patch);
+    EXPECT_EQ(clustered(meshed(s, patches).mesh, patches).of_patch, clusters.of_patch);
   }
 }
 
@@ -193,40 +207,16 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-TEST(ClustersOfAMesh, DoNotExistIfPatchesAreFewEnough) {
-  SceneBuilder builder;
-  builder.box(builder.surface("room"), Vec3(0), Vec3(1), false);
-  const auto [mesh, report] = meshed(builder.scene(), 300);
-  EXPECT_FALSE(mesh.clusters);
-  EXPECT_EQ(mesh.unknowns(), mesh.size());
-  EXPECT_EQ(report.clusters, 0u);
-}
-
-TEST(ClustersOfAMesh, DoNotExistIfEdgesOrFacesAreRequested) {
-  Progress progress;
-  MeshOptions options;
-  options.max_edge = 0.5;
-  options.patches = 50;
-  EXPECT_FALSE(meshScene(ball(), options, progress).mesh.clusters);
-  options = {};
-  options.patches = 50;
-  options.faces_as_patches = true;
-  EXPECT_FALSE(meshScene(ball(), options, progress).mesh.clusters);
-}
-
 TEST(ClustersOfAMesh, NumberAtLeastOneASurface) {
   SceneBuilder builder;
   for (int k = 0; k < 40; ++k) {
     const Vec3 low(k, 0, 0);
     builder.box(builder.surface("box " + std::to_string(k)), low, low + Vec3(0.5));
   }
-  const auto [mesh, report] = meshed(builder.scene(), 10);
-  expectPartition(mesh);
-  EXPECT_EQ(mesh.unknowns(), 40u);
-  EXPECT_TRUE(std::ranges::any_of(report.notes, [](const Note& note) {
-    return note.severity == Severity::warning &&
-           note.text.find("patches=10 cannot be kept: the scene has 40 surfaces") == 0;
-  }));
+  const PatchMesh mesh = meshed(builder.scene(), 10).mesh;
+  const PatchClusters clusters = clustered(mesh, 10);
+  expectPartition(mesh, clusters);
+  EXPECT_EQ(clusters.size(), 40u);
 }
 
 TEST(ClustersOfAMesh, DoNotDependOnTheOrderOfSurfaces) {
@@ -252,11 +242,12 @@ TEST(ClustersOfAMesh, DoNotDependOnTheOrderOfSurfaces) {
   };
   const auto clustersByName = [](const PatchMesh& mesh) {
     std::map<std::string, std::set<std::vector<Index>>> found;
-    for (std::size_t c = 0; c < mesh.clusters->size(); ++c) {
+    const PatchClusters clusters = clustered(mesh, 101);
+    for (std::size_t c = 0; c < clusters.size(); ++c) {
       std::vector<Index> inside;
-      for (const Index i : mesh.clusters->patchesOf(c)) inside.push_back(mesh.index_in_surface[i]);
+      for (const Index i : clusters.patchesOf(c)) inside.push_back(mesh.index_in_surface[i]);
       std::sort(inside.begin(), inside.end());
-      found[mesh.surface_names[mesh.surface[mesh.clusters->patchesOf(c)[0]]]].insert(inside);
+      found[mesh.surface_names[mesh.surface[clusters.patchesOf(c)[0]]]].insert(inside);
     }
     return found;
   };
@@ -267,16 +258,18 @@ TEST(ClustersOfAMesh, DoNotDependOnTheOrderOfSurfaces) {
 TEST(ClustersOfAMesh, AreSmallOnBentSurfaces) {
   // A cap of a 200th of a ball reaches 8 degrees. Clusters are neither equal nor round: four times
   // as far still shows that none is a strip around the ball.
-  const auto [mesh, report] = meshed(ball(), 200);
-  EXPECT_LT(report.widest_cone, 32);
-  EXPECT_GT(report.widest_cone, 4);
+  const PatchMesh mesh = meshed(ball(), 200).mesh;
+  const double widest = widestCone(mesh, clustered(mesh, 200));
+  EXPECT_LT(widest, 32);
+  EXPECT_GT(widest, 4);
 }
 
-TEST(ClustersOfAMesh, ChangeTheIdentityOfTheGeometry) {
-  PatchMesh mesh = meshed(ball(), 200).mesh;
-  const std::string clustered = geometryHash(mesh);
-  mesh.clusters.reset();
-  EXPECT_NE(geometryHash(mesh), clustered);
+TEST(ClustersOfAMesh, ArePatchesIfThereAreNoMore) {
+  SceneBuilder builder;
+  builder.box(builder.surface("room"), Vec3(0), Vec3(1), false);
+  const PatchMesh mesh = meshed(builder.scene(), 300).mesh;
+  EXPECT_EQ(clustered(mesh, mesh.size()).size(), mesh.size());
+  EXPECT_EQ(clustered(mesh, 10 * mesh.size()).size(), mesh.size());
 }
 
 TEST(ClustersOfAMesh, CanBeInterrupted) {

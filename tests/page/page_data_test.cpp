@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "formfactor/hemicube/eye_frame.h"
-#include "formfactor/rays/seen_patches.h"
 #include "gather/eyes.h"
 #include "page/page.h"
 #include "page/surfaces.h"
@@ -193,7 +192,7 @@ TEST(PageData, AClosedRoomHasDenseRows) {
   EXPECT_EQ(header["method"], "exact");
   EXPECT_EQ(header["tolerance"], 1e-3);
   EXPECT_EQ(header["patches"], made.mesh().size());
-  EXPECT_EQ(header["unknowns"], made.mesh().size());
+  EXPECT_EQ(header["nodes"], made.mesh().size());
   EXPECT_NEAR(header["camera"]["fov"].get<double>(), 45, 1e-12);
   EXPECT_NEAR(header["diagonal"].get<double>(), std::sqrt(3.0), 1e-12);
   const SolveSummary& summary = made.pipeline.solution().summary;
@@ -227,60 +226,59 @@ void useRoughRays(PipelineOptions& options) {
   options.factors.tolerance = 0.1;
 }
 
-/// The views of shared unknowns.
-void expectSeen(const PageReader& page, const PatchMesh& mesh) {
-  Progress silent;
-  const SeenPatches seen = seenPatches(mesh, silent);
-  EXPECT_EQ(page.indices("seen_begin"), seen.begin);
-  EXPECT_EQ(page.indices("seen_item"), seen.item);
-  EXPECT_EQ(page.indices("seen_rays"), seen.rays);
-  EXPECT_EQ(page.array<std::uint8_t>("seen_axes"), seen.axes);
-  EXPECT_EQ(page.floats("patch_axis"), seen.patch);
-  const auto hits = page.array<std::uint16_t>("seen_hits");
-  EXPECT_TRUE(std::ranges::equal(hits, seen.hits));
-  const auto code = page.array<std::uint16_t>("seen_axis_code");
-  const auto scale = page.floats("seen_axis_scale");
-  ASSERT_EQ(code.size(), seen.mean.size());
-  std::size_t first_scale = 0;
-  std::size_t value = 0;
-  for (std::size_t k = 0; k < seen.axes.size(); ++k) {
-    for (std::size_t item = seen.begin[k]; item < seen.begin[k + 1]; ++item) {
-      for (std::size_t a = 0; a < seen.axes[k]; ++a, ++value) {
-        const double step = double(scale[first_scale + a]) / 32767;
-        // Half a step of a code, and single precision.
-        ASSERT_NEAR((code[value] - 32768) * step, double(seen.mean[value]), 0.5001 * step);
-      }
-    }
-    first_scale += seen.axes[k];
-  }
-  EXPECT_EQ(first_scale, scale.size());
+void useCutRows(PipelineOptions& options) {
+  options.factors.method = FormFactorMethod::cut;
+  options.factors.tolerance = 0.05;
 }
 
-TEST(PageData, PatchesThatShareUnknownsHaveLightOfTheirOwn) {
-  Made made(dataScene("curved.obj"), 120, false, useRoughRays);
+/// Rows that are cut have no pairs: form factors are summed over nodes, and what the lamp gives to
+/// each patch is there beside them.
+TEST(PageData, FormFactorsWithoutPairsAreSummedOverNodes) {
+  Made made(dataScene("curved.obj"), 2600, false, useCutRows);
   const PatchMesh& mesh = made.mesh();
-  ASSERT_TRUE(mesh.clusters);
   expectShapes(made);
   const PageReader& page = made.page();
   EXPECT_EQ(page.header["patches"], mesh.size());
-  EXPECT_EQ(page.header["unknowns"], mesh.unknowns());
-  EXPECT_LT(mesh.unknowns(), mesh.size());
-  EXPECT_EQ(page.indices("unknown"), mesh.clusters->of_patch);
-  const auto unknown_area = page.floats("unknown_area");
-  std::vector<double> area(mesh.unknowns(), 0.0);
-  for (std::size_t i = 0; i < mesh.size(); ++i) area[mesh.unknownOf(i)] += mesh.area[i];
-  for (std::size_t k = 0; k < area.size(); ++k)
-    ASSERT_NEAR(unknown_area[k], area[k], 1e-6 * area[k]);
-  const auto irradiance = page.floats("irradiance");
+  EXPECT_EQ(page.header["method"], "cut");
+  const std::size_t nodes = page.header["nodes"];
+  EXPECT_EQ(made.report.nodes, nodes);
+  ASSERT_LT(nodes, mesh.size());
+  const auto node = page.indices("node");
+  const auto node_area = page.floats("node_area");
+  std::vector<double> area(nodes, 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) area.at(node[i]) += mesh.area[i];
+  for (std::size_t k = 0; k < nodes; ++k) ASSERT_NEAR(node_area[k], area[k], kSingle * area[k]);
+
+  const ExchangeOperator& matrix = made.pipeline.matrix();
   const Solution& solution = made.pipeline.solution();
-  for (std::size_t k = 0; k < irradiance.size(); ++k) {
-    ASSERT_EQ(irradiance[k], float(solution.irradiance[k]));
+  const std::vector<double> f = page.factors();
+  const std::vector<double> ones(mesh.size(), 1.0);
+  std::vector<double> sums(mesh.size());
+  matrix.product(ones, 1, sums);
+  double off = 0;
+  double all = 0;
+  std::vector<double> of_node(nodes, 0.0);
+  for (std::size_t i = 0; i < mesh.size(); ++i) of_node[node[i]] += mesh.area[i] * sums[i];
+  for (std::size_t k = 0; k < nodes; ++k) {
+    const double sum = std::reduce(f.begin() + std::ptrdiff_t(k * nodes),
+                                   f.begin() + std::ptrdiff_t((k + 1) * nodes));
+    off += area[k] * std::abs(sum - of_node[k] / area[k]);
+    all += of_node[k];
   }
-  EXPECT_EQ(page.header["method"], "rays");
-  EXPECT_EQ(page.header["tolerance"], 0.1);
-  EXPECT_EQ(page.header["sees_out"], false);
-  expectFactors(made, page.indices("factor_column").empty());
-  expectSeen(page, mesh);
+  EXPECT_LT(off, 0.01 * all);  // rows that are cut are reciprocal to some per mille
+
+  const auto lamp = std::ranges::find_if(page.header["materials"], [](const nlohmann::json& m) {
+    return m["emission"][0].get<double>() > 0;
+  });
+  ASSERT_NE(lamp, page.header["materials"].end());
+  const auto emitted =
+      page.floats("emitted_" + std::to_string(lamp - page.header["materials"].begin()));
+  std::vector<double> direct(3 * mesh.size());
+  matrix.product(made.pipeline.materials().emission, 3, direct);
+  for (std::size_t k = 0; k < direct.size(); ++k) {
+    ASSERT_EQ(emitted[k], float(std::max(0.0, direct[k]))) << k;
+    ASSERT_EQ(page.floats("irradiance")[k], float(solution.irradiance[k]));
+  }
 }
 
 /// The header's bound of the error of light by 16 bits: |(F' - F) B| <= largest_row_error max B.
@@ -497,22 +495,14 @@ TEST(PageData, MissingElementsLeaveTheirArraysEmpty) {
   EXPECT_EQ(made.report.element_triangles, 0u);
 }
 
-TEST(PageData, TooManyUnknownsOrPatchesAreRefusedWithTheCure) {
+TEST(PageData, TooManyPatchesAreRefusedWithTheCure) {
   PatchMesh mesh;
-  mesh.area.resize(kMostPageUnknowns);
+  mesh.area.resize(kMostPagePatches);
   EXPECT_NO_THROW(requirePageFits("s.obj", mesh));
-  mesh.area.resize(kMostPageUnknowns + 1);
-  EXPECT_EQ(test::errorOf([&] { requirePageFits("s.obj", mesh); }),
-            "s.obj: 8,001 unknowns, and a page holds the form factors of at most 8,000; use fewer "
-            "patches, e.g. patches=4000");
   mesh.area.resize(kMostPagePatches + 1);
-  mesh.clusters.emplace();
-  mesh.clusters->begin.resize(10);
   EXPECT_EQ(test::errorOf([&] { requirePageFits("s.obj", mesh); }),
             "s.obj: 100,001 patches, and a page holds at most 100,000; each planar piece is at "
             "least one patch: leave out parts of the scene");
-  mesh.area.resize(kMostPagePatches);
-  EXPECT_NO_THROW(requirePageFits("s.obj", mesh));
 }
 
 void useHemicubes(PipelineOptions& options) {

@@ -50,7 +50,7 @@ class PageReader {
 
   /// All of F, row-major.
   std::vector<double> factors() const {
-    const auto area = floats("unknown_area");
+    const auto area = floats("node_area");
     const std::size_t n = area.size();
     const auto begin = indices("factor_begin");
     const auto column = indices("factor_column");

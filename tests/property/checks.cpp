@@ -121,7 +121,7 @@ class Checker {
     options.resolution = 64;
     options.seed = model_.seed + 1;
     if (method.tolerance > 0) options.tolerance = method.tolerance;
-    if (model_.exact_emitters) options.exact_rows = emittingUnknowns(*mesh_, materials_);
+    if (model_.exact_emitters) options.exact_rows = emittingPatches(*mesh_, materials_);
     return options;
   }
 
@@ -388,9 +388,8 @@ class Checker {
     }
   }
 
-  /// If the unknown is of the part of that name.
-  bool isOf(std::size_t unknown, const std::string& name) const {
-    const Index patch = mesh_->clusters ? mesh_->clusters->patchesOf(unknown)[0] : Index(unknown);
+  /// If the patch is of the part of that name.
+  bool isOf(std::size_t patch, const std::string& name) const {
     return mesh_->surface_names[mesh_->surface[patch]].starts_with(name);
   }
 

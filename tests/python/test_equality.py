@@ -45,17 +45,6 @@ def test_rows_that_are_cut_solve_and_are_no_pairs(run_program):
         F.csr
 
 
-def test_rows_of_clusters_are_the_same(run_program):
-    scene = "data/two-rooms.obj"
-    folder = run_program("solve", scene, "--patches", 10, "--method", "rays", "--tolerance", 0.1,
-                         "-o", "s.h5")
-    mesh = rad.mesh(rad.load(scene), patches=10)
-    F = rad.form_factors(mesh, 0.1, method="rays")
-    assert len(F) == mesh.unknowns < len(mesh)
-    assert np.array_equal(mesh.cluster, stored(folder / "s.h5", "mesh/clusters/of_patch"))
-    assert np.array_equal(rad.solve(F).radiosity, stored(folder / "s.h5", "solution/radiosity"))
-
-
 def test_heat_by_name_is_the_same(run_program):
     scene = "data/cornell-box-closed.obj"
     words = ["*.emissivity=0.8", "lamp.temperature=900", "short_block.emissivity=300:0.1 1000:0.25",

@@ -221,15 +221,6 @@ def test_notes_name_keywords(tmp_path):
     assert not any("--" in note["text"] for note in scene.notes)
 
 
-def test_emissions_of_rows_are_not_those_of_patches():
-    mesh = rad.mesh(rad.load("data/two-rooms.obj"), patches=10)
-    F = rad.form_factors(mesh, 0.1, method="rays")
-    assert len(F) < len(mesh)
-    refused(lambda: rad.solve(F, 0.5, np.ones(len(F))),
-            rf"^emission: has shape \({len(F)},\); .*: N = {len(mesh)} patches, which share the {len(F)} rows "
-            r".*values\[mesh.cluster\]")
-
-
 def test_emissivities_of_patches_are_no_emissivities_of_surfaces(cube):
     refused(lambda: rad.heat(cube, np.full(24, 0.5), 300),
             r"^emissivity: has 24 values; give one number, 1 \(one a band\), or a dict by surface name")

@@ -41,29 +41,6 @@ TEST_F(ResultsFile, GivesBackEveryField) {
   }
 }
 
-/// The sample with clusters, and a row of form factors for each.
-Results clusteredSample(Index side) {
-  Results r = sample::results(side, Precision::double_precision);
-  PatchMesh& mesh = r.mesh->mesh;
-  mesh.clusters = sample::clusters(mesh);
-  FormFactors& f = *r.factors;
-  Progress progress;
-  f.matrix = aggregated(*f.matrix, mesh.clusters->of_patch, mesh.clusters->size(), progress);
-  for (auto* rows : {&f.fronts, &f.backs, &f.sky, &f.error}) rows->resize(mesh.clusters->size());
-  return r;
-}
-
-TEST_F(ResultsFile, GivesBackClustersWithARowForEach) {
-  for (const Index side : {3u, 60u}) {
-    const Results written = clusteredSample(side);
-    ASSERT_LT(written.mesh->mesh.unknowns(), written.mesh->mesh.size());
-    write(written);
-    EXPECT_TRUE(sample::same(written, readResults(file())));
-    EXPECT_NEAR(double(estimateResultsBytes(written)), double(std::filesystem::file_size(file())),
-                4096);
-  }
-}
-
 TEST_F(ResultsFile, GivesBackRowsThatAreCut) {
   for (const bool with_pairs : {true, false}) {
     // A few patches in their headers; enough that rows take several chunks and blocks.
@@ -347,30 +324,6 @@ TEST_F(ResultsFile, NamesFieldsThatAnotherProgramChanged) {
         e.vector("/mesh/area", H5T_NATIVE_DOUBLE, hsize_t(1) << 40);
       },
       "/mesh/area claims");
-}
-
-TEST_F(ResultsFile, NamesClustersThatAnotherProgramChanged) {
-  const Results good = clusteredSample(3);
-  const std::vector<Index>& of_patch = good.mesh->mesh.clusters->of_patch;
-  const auto expectAfter = [&](std::size_t patch, Index cluster, const std::string& part) {
-    write(good);
-    Edit(file()).element("/mesh/clusters/of_patch", H5T_NATIVE_UINT, patch, cluster);
-    SCOPED_TRACE(part);
-    expectInputError("/mesh/clusters/of_patch " + part);
-  };
-  expectAfter(0, 10, "points beyond the 10 elements");
-  // The last patch is a back, and alone; the first is the front of another cluster.
-  expectAfter(9, of_patch[0], "puts patches of two surfaces or sides together");
-  expectAfter(0, of_patch[8] + 1, "puts patches");
-  Results short_of_rows = good;
-  for (auto* rows : {&short_of_rows.factors->fronts, &short_of_rows.factors->backs,
-                     &short_of_rows.factors->sky, &short_of_rows.factors->error}) {
-    rows->resize(10);
-  }
-  short_of_rows.factors->matrix = sample::matrix(good.mesh->mesh, Precision::double_precision);
-  write(short_of_rows);
-  expectInputError("/form_factors/fronts has 10 values, not " +
-                   std::to_string(good.mesh->mesh.unknowns()));
 }
 
 TEST_F(ResultsFile, NamesElementsThatAnotherProgramChanged) {

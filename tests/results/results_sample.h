@@ -142,25 +142,6 @@ inline MeshReport meshReport() {
   return r;
 }
 
-/// A patch and the one after the next share a cluster, if surface and side are the same.
-inline PatchClusters clusters(const PatchMesh& m) {
-  PatchClusters c;
-  std::vector<std::vector<Index>> found;
-  for (Index i = 0; i < m.size(); ++i) {
-    const bool joins = i >= 2 && m.surface[i] == m.surface[i - 2] && m.side[i] == m.side[i - 2] &&
-                       found[c.of_patch[i - 2]].size() == 1;
-    if (!joins) found.emplace_back();
-    c.of_patch.push_back(joins ? c.of_patch[i - 2] : Index(found.size() - 1));
-    found[c.of_patch[i]].push_back(i);
-  }
-  c.begin = {0};
-  for (const std::vector<Index>& patches : found) {
-    c.patches.insert(c.patches.end(), patches.begin(), patches.end());
-    c.begin.push_back(c.patches.size());
-  }
-  return c;
-}
-
 /// Rows of all kinds: empty (patch 1), sparse, and, from patch 2 on every fifth, full.
 inline std::shared_ptr<const RowMatrix> matrix(const PatchMesh& m, Precision precision) {
   auto f = std::make_shared<RowMatrix>(m.area, precision);
@@ -436,15 +417,11 @@ inline auto members(const PlanarPolygons& s) {
   const auto& [a, b, c, d, e, f, g, h] = s;
   return std::tie(a, b, c, d, e, f, g, h);
 }
-inline auto members(const PatchClusters& s) {
-  const auto& [a, b, c] = s;
-  return std::tie(a, b, c);
-}
 inline auto members(const PatchMesh& s) {
   // Enclosures are not kept in the file: they are found anew.
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, enclosures, r] = s;
+  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, enclosures] = s;
   static_cast<void>(enclosures);
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
 }
 inline auto members(const MeshResult& s) {
   const auto& [a, b] = s;

@@ -121,15 +121,6 @@ class Vtp(CliTest):
         self.assertNotIn("error", read.arrays)
         self.assertNotIn("radiosity", read.arrays)
 
-    def test_patches_that_share_an_unknown_have_its_row(self):
-        self.write("soup.obj", "".join(
-            f"v {k} 0 {k * k % 7}\nv {k} 1 {k * k % 7}\nv {k + 1} 1 {(k + 1) ** 2 % 7}\n"
-            f"f {3 * k + 1} {3 * k + 2} {3 * k + 3}\n" for k in range(40)))
-        read, h5 = self.both("factors", "soup.obj", "--patches", 4, "--method", "rays")
-        of_patch = h5["mesh/clusters/of_patch"][()]
-        numpy.testing.assert_array_equal(read.arrays["unknown"], of_patch)
-        numpy.testing.assert_array_equal(read.arrays["sky"], h5["form_factors/sky"][()][of_patch])
-
     def test_a_file_of_mesh_holds_materials(self):
         read, h5 = self.both("mesh", "box.obj", "--patches", 60)
         self.check_geometry(read, h5["mesh"])

@@ -83,7 +83,7 @@ Cut::Cost Cut::foresee(Progress& progress) {
   const Stopwatch watch;
   scene_.emplace(mesh(), options().seed);
   // Rows that will be exact are no part of the tree that is used; a few more do no harm here.
-  const PatchTree tree = treeOfUnknowns(mesh(), *scene_, {});
+  const PatchTree tree = treeOfPatches(mesh(), *scene_, {});
   seconds_preparing_ = watch.seconds();
   progress.advance();
   progress.end();
@@ -189,12 +189,12 @@ FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
   report.cut = reportOfPlan();
   report.cut.seconds_prepare += exact.seconds;
   const KnownEntries known(std::move(exact.rows), scene.position());
-  parts.tree = treeOfUnknowns(mesh(), scene, known);
+  parts.tree = treeOfPatches(mesh(), scene, known);
   parts.bias = plan_.bias;
   const RowCutter cutter(scene, parts.tree, plan_.opening);
   CutBlocks blocks(cutter, plan_.rays, run.progress);
   makeAllRows(blocks, run);
-  ClosedRows closed(mesh(), true);
+  ClosedRows closed(mesh());
   std::vector<std::vector<SeenBack>> seen(n);
   setAccounts(cutter, blocks.counts(), known, closed, result, seen, parts.of_a_hit);
   closed.report(mesh(), report);

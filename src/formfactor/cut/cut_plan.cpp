@@ -34,19 +34,25 @@ struct SampleRow {
   std::size_t place = 0;
   double area = 0;
   RayRow row;
-  OfTrials direct{};      ///< irradiance that the row does not bring
-  OfTrials whole{};       ///< irradiance by its rays
-  OfTrials difference{};  ///< half of that between the replicates
-  OfTrials off{};         ///< by which the cut differs
+  OfTrials direct{};      ///< irradiance that its rays do not bring
+  OfTrials sky{};         ///< by rays that meet nothing
+  OfTrials whole{};       ///< by rays that end on patches
+  OfTrials difference{};  ///< of both: half of that between the replicates
+  OfTrials off{};         ///< by which the cut differs from `whole`
 };
 
-void measureRays(const RayScene& scene, std::span<const double> light, SampleRow& sample) {
+void measureRays(const RayScene& scene, const TrialLights& lights, SampleRow& sample) {
   sample.whole = {};
   sample.difference = {};
   const RayRow& row = sample.row;
   if (!(row.counted() > 0)) return;
+  for (std::size_t t = 0; t < kTrials; ++t) {
+    sample.sky[t] = lights.sky[t] * row.skyShare();
+    sample.difference[t] =
+        lights.sky[t] * (double(row.sky[0]) - double(row.sky[1])) / row.counted();
+  }
   for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < scene.size(); ++e) {
-    const double* of = &light[scene.order()[row.columns[e]] * kTrials];
+    const double* of = &lights.radiosity[scene.order()[row.columns[e]] * kTrials];
     const auto [first, second] = row.hits[e];
     for (std::size_t t = 0; t < kTrials; ++t) {
       sample.whole[t] += (double(first) + double(second)) / row.counted() * of[t];
@@ -64,7 +70,7 @@ double relativeError(std::span<const SampleRow> rows, OfTrials SampleRow::*off) 
     double norm = 0;
     for (const SampleRow& row : rows) {
       squares += row.area * (row.*off)[t] * (row.*off)[t];
-      const double all = row.direct[t] + row.whole[t];
+      const double all = row.direct[t] + row.sky[t] + row.whole[t];
       norm += row.area * all * all;
     }
     if (!(norm > 0)) continue;
@@ -83,7 +89,6 @@ class Trials {
       const PatchTree::Patch& patch = tree.patches()[place];
       sample.place = place;
       sample.area = patch.area;
-      if (lights_.direct.empty()) continue;
       std::copy_n(&lights_.direct[patch.patch * kTrials], kTrials, sample.direct.begin());
     }
   }
@@ -131,7 +136,7 @@ class Trials {
       scene_.cast(scene_.position()[tree_.patches()[sample.place].patch], rays, sample.row,
                   progress_);
       taken[k] = watches.elapsed();
-      if (!progress_.cancelled()) measureRays(scene_, lights_.radiosity, sample);
+      if (!progress_.cancelled()) measureRays(scene_, lights_, sample);
     });
     progress_.check();
     for (const BothClocks& of_row : taken) taken_ += of_row;

@@ -15,22 +15,16 @@ struct HitPatch {
 
 }  // namespace
 
-PatchTree treeOfUnknowns(const PatchMesh& mesh, const RayScene& scene, const KnownEntries& known) {
-  std::vector<Vec3> place(mesh.unknowns(), Vec3(0.0));
-  std::vector<Vec3> normal(mesh.unknowns(), Vec3(0.0));
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
-    place[mesh.unknownOf(i)] += mesh.area[i] * mesh.centroid[i];
-    normal[mesh.unknownOf(i)] += mesh.area[i] * mesh.normal[i];
-  }
+PatchTree treeOfPatches(const PatchMesh& mesh, const RayScene& scene, const KnownEntries& known) {
   std::vector<PatchTree::Patch> patches;
   for (std::size_t k = 0; k < scene.size(); ++k) {
     const double area = scene.area()[k];
     if (!(area > 0) || known.rowAt(k) != nullptr) continue;
-    const Index unknown = scene.order()[k];
-    const glm::vec3 at = scene.caster().place(place[unknown] / area);
-    const glm::vec3 facing(normal[unknown] / area);
+    const Index patch = scene.order()[k];
+    const glm::vec3 at = scene.caster().place(mesh.centroid[patch]);
+    const glm::vec3 facing(mesh.normal[patch]);
     patches.push_back(
-        {.at = {at.x, at.y, at.z, facing.x, facing.y, facing.z}, .area = area, .patch = unknown});
+        {.at = {at.x, at.y, at.z, facing.x, facing.y, facing.z}, .area = area, .patch = patch});
   }
   return PatchTree(std::move(patches));
 }

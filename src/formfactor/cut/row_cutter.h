@@ -1,4 +1,4 @@
-// The tree of a mesh's unknowns, and rows of rays cut through it.
+// The tree of a mesh's patches, and rows of rays cut through it.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace radiosity {
 
-/// The unknowns that have an area and no row that is known whole, in the coordinates of rays.
-PatchTree treeOfUnknowns(const PatchMesh& mesh, const RayScene& scene, const KnownEntries& known);
+/// The patches that have an area and no row that is known whole, in the coordinates of rays.
+PatchTree treeOfPatches(const PatchMesh& mesh, const RayScene& scene, const KnownEntries& known);
 
 /// What the rays of a row count beside its cut. Each hit stands for itself.
 struct CutCounts {
   double rays = 0;              ///< of both replicates; RayRow::counted()
   double sky = 0;               ///< of these, into the sky
-  double known = 0;             ///< on unknowns that are not in the tree
+  double known = 0;             ///< on patches that are not in the tree
   std::vector<SeenBack> backs;  ///< surfaces seen from behind, and hits in place of shares
 };
 

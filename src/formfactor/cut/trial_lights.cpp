@@ -24,8 +24,10 @@ constexpr std::size_t kCandidates = 16;
 /// A shadow ray that comes this near to its lamp has reached it.
 constexpr float kReached = 1 - 1e-4F;
 
-/// Shadow rays of a patch to what emits, and what is taken to be reflected of what they bring.
+/// Rays of a patch to what emits, or to the sky, and what is taken to be reflected of what they
+/// bring.
 constexpr std::size_t kRaysToEmitters = 16;
+constexpr std::size_t kRaysToSky = 16;
 constexpr double kReflected = 0.5;
 /// Patches that are lit at once.
 constexpr std::size_t kAtOnce = 4 * kRayLanes;
@@ -35,20 +37,18 @@ double uniform(std::uint64_t seed, std::uint64_t number) {
   return double(mixed(mixed(seed) ^ number) >> 11U) * 0x1p-53;
 }
 
-/// A sun, or a lamp in mid-air.
+/// A sun, a lamp in mid-air, or an even sky.
 struct Trial {
-  bool is_sun = false;
+  enum class Kind { sun, lamp, sky };
+  Kind kind = Kind::sky;
   glm::vec3 at{0};  ///< the direction to the sun, or the place of the lamp
   float size = 0;   ///< of a lamp: within this distance it is hardly brighter
 };
 
 glm::vec3 placeOf(const PatchTree::Patch& patch) { return {patch.at[0], patch.at[1], patch.at[2]}; }
 
-/// Of a bent cluster the mean is shorter.
 glm::vec3 normalOf(const PatchTree::Patch& patch) {
-  const glm::vec3 mean(patch.at[3], patch.at[4], patch.at[5]);
-  const float length = glm::length(mean);
-  return length > 0 ? mean / length : glm::vec3(0, 0, 1);
+  return {patch.at[3], patch.at[4], patch.at[5]};
 }
 
 /// The lengths of some rays, infinite where they meet nothing.
@@ -66,48 +66,73 @@ void traceLengths(const EmbreeScene& embree, std::span<const glm::vec3> from,
   }
 }
 
+/// A cosine-distributed direction (Malley's method); x and y in [0, 1).
+glm::vec3 directionFrom(const PatchTree::Patch& patch, double x, double y) {
+  const glm::vec3 z = normalOf(patch);
+  const glm::vec3 aside = std::abs(z.x) < 0.5F ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
+  const glm::vec3 across = glm::normalize(glm::cross(aside, z));
+  const auto radius = float(std::sqrt(x));
+  const auto turn = float(2 * std::numbers::pi * y);
+  return radius * std::cos(turn) * across + radius * std::sin(turn) * glm::cross(z, across) +
+         std::sqrt(std::max(0.0F, 1 - radius * radius)) * z;
+}
+
 /// A lamp half-way along a ray that leaves some patch, or a sun where that meets nothing.
 Trial makeTrial(const RayScene& scene, const PatchTree& tree, std::uint64_t seed) {
   const auto patches = tree.patches();
   const auto chosen = std::size_t(uniform(seed, 0) * double(patches.size()));
   const PatchTree::Patch& patch = patches[std::min(chosen, patches.size() - 1)];
-  const glm::vec3 z = normalOf(patch);
-  const glm::vec3 aside = std::abs(z.x) < 0.5F ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
-  const glm::vec3 x = glm::normalize(glm::cross(aside, z));
-  const auto radius = float(std::sqrt(uniform(seed, 1)));
-  const auto turn = float(2 * std::numbers::pi * uniform(seed, 2));
-  const glm::vec3 along = radius * std::cos(turn) * x + radius * std::sin(turn) * glm::cross(z, x) +
-                          std::sqrt(std::max(0.0F, 1 - radius * radius)) * z;
-  const glm::vec3 from = placeOf(patch) + kRayLift * z;
+  const glm::vec3 along = directionFrom(patch, uniform(seed, 1), uniform(seed, 2));
+  const glm::vec3 from = placeOf(patch) + kRayLift * normalOf(patch);
   float length = 0;
   traceLengths(scene.caster().embree(), {&from, 1}, {&along, 1}, {&length, 1});
-  if (std::isinf(length)) return {true, along, 0};
-  return {false, from + 0.5F * length * along, 0.5F * length};
+  if (std::isinf(length)) return {Trial::Kind::sun, along, 0};
+  return {Trial::Kind::lamp, from + 0.5F * length * along, 0.5F * length};
 }
 
-/// What a trial gives to some patches, with its shadows.
+/// The share of the view of some patches that meets nothing.
+void shineFromSky(const RayScene& scene, std::span<const PatchTree::Patch> patches,
+                  std::uint64_t seed, std::span<double> light) {
+  std::vector<glm::vec3> from(patches.size());
+  std::vector<glm::vec3> along(patches.size());
+  std::vector<float> lengths(patches.size());
+  std::ranges::fill(light, 0.0);
+  for (std::size_t ray = 0; ray < kRaysToSky; ++ray) {
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      const std::uint64_t number = std::uint64_t(patches[k].patch) * 2 * kRaysToSky + 2 * ray;
+      const double x = (double(ray) + uniform(seed, number)) / double(kRaysToSky);
+      from[k] = placeOf(patches[k]) + kRayLift * normalOf(patches[k]);
+      along[k] = directionFrom(patches[k], x, uniform(seed, number + 1));
+    }
+    traceLengths(scene.caster().embree(), from, along, lengths);
+    for (std::size_t k = 0; k < patches.size(); ++k) {
+      light[k] += std::isinf(lengths[k]) ? 1.0 / double(kRaysToSky) : 0.0;
+    }
+  }
+}
+
+/// What a sun or a lamp gives to some patches, with its shadows.
 void shine(const RayScene& scene, std::span<const PatchTree::Patch> patches, const Trial& trial,
            std::span<double> light) {
+  const bool is_sun = trial.kind == Trial::Kind::sun;
   std::vector<glm::vec3> from(patches.size());
   std::vector<glm::vec3> along(patches.size());
   std::vector<float> distance(patches.size());
   std::vector<float> lengths(patches.size());
   for (std::size_t k = 0; k < patches.size(); ++k) {
     from[k] = placeOf(patches[k]) + kRayLift * normalOf(patches[k]);
-    const glm::vec3 to = trial.is_sun ? trial.at : trial.at - from[k];
+    const glm::vec3 to = is_sun ? trial.at : trial.at - from[k];
     distance[k] = glm::length(to);
     along[k] = distance[k] > 0 ? to / distance[k] : normalOf(patches[k]);
   }
   traceLengths(scene.caster().embree(), from, along, lengths);
   for (std::size_t k = 0; k < patches.size(); ++k) {
-    const float reach =
-        trial.is_sun ? std::numeric_limits<float>::infinity() : kReached * distance[k];
+    const float reach = is_sun ? std::numeric_limits<float>::infinity() : kReached * distance[k];
     const float cosine = glm::dot(along[k], normalOf(patches[k]));
     light[k] = 0;
     if (cosine <= 0 || lengths[k] < reach) continue;
     const double square = double(trial.size) * trial.size;
-    const double spread =
-        trial.is_sun ? 1.0 : square / (square + double(distance[k]) * distance[k]);
+    const double spread = is_sun ? 1.0 : square / (square + double(distance[k]) * distance[k]);
     light[k] = cosine * spread;
   }
 }
@@ -128,6 +153,9 @@ std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& 
   std::ranges::stable_sort(candidates, std::ranges::greater(), &std::pair<double, Trial>::first);
   std::array<Trial, kTrials> trials;
   for (std::size_t t = 0; t < trials.size(); ++t) trials[t] = candidates[t].second;
+  const bool is_open = std::ranges::any_of(
+      candidates, [](const auto& one) { return one.second.kind == Trial::Kind::sun; });
+  if (is_open) trials.back() = {};
   return trials;
 }
 
@@ -144,15 +172,22 @@ void forParts(const PatchTree& tree, Progress& progress, const Part& part) {
   progress.check();
 }
 
-/// What some trials give to all unknowns, kTrials values each.
-std::vector<double> lightOf(std::span<const Trial> trials, const RayScene& scene,
-                            const PatchTree& tree, Progress& progress) {
-  std::vector<double> light(scene.size() * kTrials, 0.0);
+TrialLights lightOf(std::span<const Trial> trials, const RayScene& scene, const PatchTree& tree,
+                    std::uint64_t seed, Progress& progress) {
+  TrialLights light;
+  light.direct.assign(scene.size() * kTrials, 0.0);
+  light.radiosity = light.direct;
   for (std::size_t t = 0; t < trials.size(); ++t) {
+    const bool is_sky = trials[t].kind == Trial::Kind::sky;
+    light.sky[t] = is_sky ? 1.0 : 0.0;
     forParts(tree, progress, [&](std::span<const PatchTree::Patch> some) {
-      std::array<double, kAtOnce> of{};
-      shine(scene, some, trials[t], std::span(of).first(some.size()));
-      for (std::size_t k = 0; k < some.size(); ++k) light[some[k].patch * kTrials + t] = of[k];
+      std::array<double, kAtOnce> all{};
+      const std::span<double> of = std::span(all).first(some.size());
+      is_sky ? shineFromSky(scene, some, seed, of) : shine(scene, some, trials[t], of);
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        light.radiosity[some[k].patch * kTrials + t] = kReflected * of[k];
+        if (!is_sky) light.direct[some[k].patch * kTrials + t] = of[k];
+      }
     });
   }
   return light;
@@ -163,7 +198,7 @@ class EmitterPlaces {
  public:
   EmitterPlaces(const PatchMesh& mesh, std::span<const Index> emitters) : mesh_(mesh) {
     for (std::size_t i = 0; i < mesh.size(); ++i) {
-      if (!(mesh.area[i] > 0) || !std::ranges::binary_search(emitters, mesh.unknownOf(i))) continue;
+      if (!(mesh.area[i] > 0) || !std::ranges::binary_search(emitters, i)) continue;
       patch_.push_back(Index(i));
       area_.emplace_back(mesh, i);
       end_.push_back((end_.empty() ? 0.0 : end_.back()) + mesh.area[i]);
@@ -257,7 +292,7 @@ TrialLights trialLights(const PatchMesh& mesh, const RayScene& scene, const Patc
                         std::span<const Index> emitters, std::uint64_t seed, Progress& progress) {
   TrialLights light = ownLight(mesh, scene, tree, emitters, seed, progress);
   if (!light.radiosity.empty()) return light;
-  return {lightOf(chooseTrials(scene, tree, seed), scene, tree, progress), {}};
+  return lightOf(chooseTrials(scene, tree, seed), scene, tree, seed, progress);
 }
 
 }  // namespace radiosity

@@ -1,6 +1,7 @@
 // Lights under which rows that are cut are tried.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,19 +14,19 @@ namespace radiosity {
 
 inline constexpr int kTrials = 4;
 
-/// Of each unknown, kTrials values each.
+/// Of each patch, kTrials values each. Errors are relative to all light.
 struct TrialLights {
-  std::vector<double> radiosity;  ///< what rows bring
-  /// What falls on it anyway, which rows do not bring: errors are relative to all light. Empty: of
-  /// trials for which that is not known.
-  std::vector<double> direct;
+  std::vector<double> direct;     ///< what falls on it anyway, which rows do not bring
+  std::vector<double> radiosity;  ///< what rows bring: half of `direct` is reflected
+  /// The irradiance of a place that sees nothing but sky: rays bring it, not `direct`.
+  std::array<double, kTrials> sky{};
 };
 
-/// If some unknowns are known to emit: what these give to all others directly, taken to be alike
-/// by area, and half of it reflected; one trial then. The rows bring what is reflected: emitters'
-/// own are known. Else suns where a ray from some patch finds the
-/// sky, and lamps in mid-air where it finds a wall: those of many that reach most of the area, with
-/// their shadows. Throws Cancelled.
+/// If some patches are known to emit: what these give to all others directly, taken to be alike
+/// by area; one trial then. The rows bring what is reflected: emitters' own are known. Else suns
+/// where a ray from some patch finds the sky, and lamps in mid-air where it finds a wall: those of
+/// many that reach most of the area, with their shadows. If some find the sky, an even sky is one
+/// of the trials. Throws Cancelled.
 TrialLights trialLights(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,
                         std::span<const Index> emitters, std::uint64_t seed, Progress& progress);
 

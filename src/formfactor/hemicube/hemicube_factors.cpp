@@ -15,7 +15,7 @@
 #include "formfactor/known_entries.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/shared_rows.h"
-#include "mesh/clusters/canonical_order.h"
+#include "mesh/patches/canonical_order.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
 
@@ -29,7 +29,7 @@ KnownEntries knownByPatch(std::vector<KnownRow> rows, std::size_t patches, Proce
     processes->broadcastValue(count);
     rows.resize(count);
     for (KnownRow& row : rows) {
-      processes->broadcastValue(row.unknown);
+      processes->broadcastValue(row.patch);
       processes->broadcastArray(row.entries);
       processes->broadcastArray(row.backs);
     }
@@ -138,7 +138,7 @@ FormFactors hemicubeFactors(const PatchMesh& mesh, const HemicubeScene& scene,
   report.simd_target = scene.rows.kernels().target;
   const KnownEntries known = knownByPatch(std::move(known_rows), n, run.processes);
   std::vector<std::vector<SeenBack>> seen_backs(n);
-  ClosedRows closed(mesh, false);
+  ClosedRows closed(mesh);
   Progress& progress = run.progress;
   report.hemicube = fillRows({scene, known, closed, *rows, result, seen_backs}, run);
   report.empty_rows = n - report.hemicube.hemicubes;
@@ -209,7 +209,7 @@ std::shared_ptr<const ExchangeMatrix> Hemicubes::share(const RowRun& run) const 
   FormFactors result = emptyAccounts(mesh().size());
   std::vector<std::vector<SeenBack>> seen_backs(mesh().size());
   const KnownEntries known = knownByPatch({}, mesh().size(), run.processes);
-  ClosedRows closed(mesh(), false);
+  ClosedRows closed(mesh());
   fillRows({scene, known, closed, *rows, result, seen_backs}, run);
   return rows;
 }

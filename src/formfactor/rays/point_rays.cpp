@@ -90,9 +90,7 @@ HemisphereSet::Turn HemisphereSet::turnAt(const Vec3& place, std::uint64_t seed)
 }
 
 PointRays::PointRays(const PatchMesh& mesh)
-    : scene_(mesh),
-      embree_(scene_, mesh),
-      targets_(scene_, embree_, [](std::uint32_t item) { return item; }) {}
+    : scene_(mesh), embree_(scene_, mesh), targets_(scene_, embree_) {}
 
 glm::vec3 PointRays::lifted(const Vec3& from, const Vec3& normal) const {
   return embree_.place(from * scene_.scale) + kRayLift * glm::vec3(normal);

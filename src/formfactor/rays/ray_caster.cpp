@@ -2,10 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-
-#include "base/parallel.h"
-#include "formfactor/rays/origin_order.h"
 
 namespace radiosity {
 namespace {
@@ -16,22 +12,6 @@ constexpr std::uint32_t kSky = kNone - 1;
 constexpr std::size_t kBatch = 16384;
 /// Cells of directions: kBatch points put about one packet into each.
 constexpr std::size_t kCells = std::size_t(kDirectionCells) * kDirectionCells;
-/// Rays from as many parts are not coherent although they leave in one direction. One by one, rays
-/// of rows with 32 to 63 parts take .74 to 1.06 times as long as together, those with 256 and more
-/// .68 to .79 times, and those with a single part 1.03 to 1.39 times (four scenes by others of .5
-/// to 1.4 million triangles).
-constexpr std::size_t kManyParts = 32;
-
-std::vector<Index> orderedClusters(const PatchMesh& mesh) {
-  if (!mesh.clusters) return {};
-  std::vector<Index> ordered(mesh.clusters->patches.size());
-  parallelFor(mesh.clusters->size(), 1, [&](std::size_t c) {
-    std::ranges::copy(originOrder(mesh, mesh.clusters->patchesOf(c)),
-                      ordered.begin() + std::ptrdiff_t(mesh.clusters->begin[c]));
-  });
-  return ordered;
-}
-
 }  // namespace
 
 /// Rays that are sorted together: those of all replicates, one replicate after the other.
@@ -104,44 +84,25 @@ struct RayCaster::Batch {
   }
 };
 
-RayCaster::RayCaster(const PatchMesh& mesh, RayItems items)
+RayCaster::RayCaster(const PatchMesh& mesh)
     : mesh_(mesh),
-      ordered_(orderedClusters(mesh)),
-      items_(items),
       scene_(mesh),
       embree_(scene_, mesh),
-      targets_(scene_, embree_, [this](std::uint32_t item) { return rayItem(item); }),
+      targets_(scene_, embree_),
       kernels_(rayKernels()) {}
 
-RayOrigins RayCaster::origins(std::size_t unknown) const {
-  const auto alone = Index(unknown);
-  std::span<const Index> patches(&alone, 1);
-  if (mesh_.clusters) {
-    patches = std::span(ordered_).subspan(mesh_.clusters->begin[unknown],
-                                          mesh_.clusters->patchesOf(unknown).size());
-  }
-  return {mesh_, patches, scene_.scale, embree_.middle()};
+RayOrigins RayCaster::origins(std::size_t patch) const {
+  return {mesh_, patch, scene_.scale, embree_.middle()};
 }
 
 bool RayCaster::canAim(const RayOrigins& origins) const {
-  for (std::uint32_t k = 0; k < origins.parts(); ++k) {
-    if (embree_.isNearPolygon(origins.part(k).polygon)) return false;
-  }
-  return true;
+  return !embree_.isNearPolygon(origins.polygon());
 }
 
 std::size_t RayCaster::bytes() const {
   // Embree's tree takes about this much a triangle in robust mode.
   constexpr std::size_t kTreeBytes = 160;
-  return scene_.bytes() + targets_.bytes() + triangles() * kTreeBytes +
-         ordered_.size() * sizeof(Index);
-}
-
-/// The item of rays for an item of the ViewScene.
-std::uint32_t RayCaster::rayItem(std::uint32_t item) const {
-  const std::size_t patches = scene_.patches;
-  if (item < patches) return frontOf(item);
-  return std::uint32_t(fronts() + (item - patches));
+  return scene_.bytes() + targets_.bytes() + triangles() * kTreeBytes;
 }
 
 /// Calls visit(ray, item) with the ray's place in the batch; kSky stands for no item.
@@ -150,14 +111,13 @@ void RayCaster::tracePacket(const RayOrigins& origins, Batch& batch, const std::
                             int lanes, const Visit& visit) const {
   RTCRayHit16 packet;
   RayEnds ends;
+  const Index own = origins.polygon();
   initPacket(packet);
   kernels_.fill(batch.arrays(origins), order, packet);
-  embree_.trace(packet, lanes,
-                origins.parts() < kManyParts ? Coherence::coherent : Coherence::incoherent);
+  embree_.trace(packet, lanes);
   kernels_.find(packet, targets_, ends);
   for (int k = 0; k < lanes; ++k) {
     const std::size_t ray = order[k];
-    const Index own = origins.part(std::uint32_t(batch.part[ray])).polygon;
     if (embree_.isNearPolygon(own)) {
       if (const auto end = embree_.endBefore(batch.from(ray), batch.along(ray), own)) {
         visit(ray, itemAt(*end));
@@ -178,10 +138,9 @@ void RayCaster::tracePacket(const RayOrigins& origins, Batch& batch, const std::
   }
 }
 
-/// Calls packet(batch, order, lanes) for packets of rays `first` to `last` of each replicate.
-template <class Packet>
-void RayCaster::forPackets(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
-                           std::uint32_t last, const Packet& packet) const {
+void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
+                     std::uint32_t last, std::array<Counts, kReplicates>& of_replicate) const {
+  if (origins.empty()) return;
   const FlushDenormals flush;
   const auto batch = std::make_unique_for_overwrite<Batch>();
   while (first < last) {
@@ -191,65 +150,18 @@ void RayCaster::forPackets(const RayOrigins& origins, std::uint64_t seed, std::u
     batch->sort();
     for (std::size_t k = 0; k < batch->size(); k += kRayLanes) {
       const int lanes = int(std::min<std::size_t>(batch->size() - k, kRayLanes));
-      packet(*batch, batch->order.data() + k, lanes);
+      tracePacket(origins, *batch, batch->order.data() + k, lanes,
+                  [&](std::size_t ray, std::uint32_t item) {
+                    Counts& counts = of_replicate[ray < batch->each ? 0 : 1];
+                    if (item == kSky) {
+                      ++counts.sky;
+                    } else {
+                      counts.add(item, 1);
+                    }
+                  });
     }
     first += std::uint32_t(batch->each);
   }
-}
-
-/// Calls visit(batch, ray, item) for rays `first` to `last` of each replicate.
-template <class Visit>
-void RayCaster::trace(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
-                      std::uint32_t last, const Visit& visit) const {
-  forPackets(origins, seed, first, last, [&](Batch& batch, const std::uint16_t* order, int lanes) {
-    tracePacket(origins, batch, order, lanes,
-                [&](std::size_t ray, std::uint32_t item) { visit(batch, ray, item); });
-  });
-}
-
-void RayCaster::cast(const RayOrigins& origins, std::uint64_t seed, std::uint32_t first,
-                     std::uint32_t last, std::array<Counts, kReplicates>& of_replicate) const {
-  if (origins.empty()) return;
-  trace(origins, seed, first, last, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
-    Counts& counts = of_replicate[ray < batch.each ? 0 : 1];
-    if (item == kSky) {
-      ++counts.sky;
-    } else {
-      counts.add(item, 1);
-    }
-  });
-}
-
-void RayCaster::visitEnd(const RayOrigins& origins, const Batch& batch, std::size_t ray,
-                         std::uint32_t item, const EndVisitor& visit) const {
-  visit(batch.from(ray), origins.frame(origins.part(std::uint32_t(batch.part[ray])).frame).z,
-        item == kSky ? std::uint32_t(items()) : item);
-}
-
-void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
-                          const EndVisitor& visit) const {
-  Ends ends;
-  visitEnds(origins, seed, rays, ends, visit);
-}
-
-void RayCaster::visitEnds(const RayOrigins& origins, std::uint64_t seed, std::uint32_t rays,
-                          Ends& ends, const EndVisitor& visit) const {
-  if (origins.empty()) return;
-  if (ends.empty()) {
-    ends.reserve(std::size_t(rays) * kReplicates);
-    trace(origins, seed, 0, rays, [&](const Batch& batch, std::size_t ray, std::uint32_t item) {
-      ends.push_back(item);
-      visitEnd(origins, batch, ray, item, visit);
-    });
-    return;
-  }
-  std::size_t next = 0;
-  forPackets(origins, seed, 0, rays,
-             [&](const Batch& batch, const std::uint16_t* order, int lanes) {
-               for (int k = 0; k < lanes; ++k) {
-                 visitEnd(origins, batch, order[k], ends[next++], visit);
-               }
-             });
 }
 
 }  // namespace radiosity

@@ -273,7 +273,7 @@ std::shared_ptr<const ExchangeMatrix> shared(Processes& processes, Progress& pro
 /// The rows that are closed, and the count of rays that leave them.
 ClosedRows closedRows(const PatchMesh& mesh, const RayScene& scene, const std::vector<RayRow>& rows,
                       FormFactorReport& report) {
-  ClosedRows closed(mesh, true);
+  ClosedRows closed(mesh);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (!closed.keeps(scene.order()[k], rows[k].skyShare(), ClosedRows::kMostLeaks)) continue;
     report.rays.leaked += rows[k].sky[0] + rows[k].sky[1];

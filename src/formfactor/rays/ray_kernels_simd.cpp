@@ -119,7 +119,7 @@ void toDisc(const float* x, const float* y, std::size_t count, float* u, float* 
   }
 }
 
-/// Directions in a window of a frame (DirectionWindow), in its axes.
+/// Directions in a window (DirectionWindow), in the axes of the frame.
 HWY_INLINE Place inWindow(const RayOrigins& from, Float low, Float across, Float x, Float y) {
   const Floats d;
   const Float higher = hn::Mul(set(from.range()), x);
@@ -217,27 +217,6 @@ HWY_INLINE Int zCurve(Float x, Float y) {
   return hn::Or(spread(cellOf(x)), hn::ShiftLeft<1>(spread(cellOf(y))));
 }
 
-/// The cells of unit directions on an octahedron laid flat (Cigolle et al., JCGT 3(2), 2014).
-HWY_INLINE Int octahedralCells(const Place& along) {
-  const Floats d;
-  const Float one = set(1.0F);
-  const Float scale =
-      hn::Div(one, hn::Add(hn::Add(hn::Abs(along.x), hn::Abs(along.y)), hn::Abs(along.z)));
-  const Float u = hn::Mul(along.x, scale);
-  const Float v = hn::Mul(along.y, scale);
-  const auto signOf = [&](Float x) HWY_ATTR {
-    return hn::IfThenElse(hn::Lt(x, hn::Zero(d)), set(-1.0F), one);
-  };
-  const auto below = hn::Lt(along.z, hn::Zero(d));
-  const Float folded_u = hn::Mul(hn::Sub(one, hn::Abs(v)), signOf(u));
-  const Float folded_v = hn::Mul(hn::Sub(one, hn::Abs(u)), signOf(v));
-  const auto inSquare = [&](Float x) HWY_ATTR {
-    return hn::Max(hn::Zero(d), hn::Add(set(0.5F), hn::Mul(set(0.5F), x)));
-  };
-  return zCurve(inSquare(hn::IfThenElse(below, folded_u, u)),
-                inSquare(hn::IfThenElse(below, folded_v, v)));
-}
-
 void store(const Place& place, const std::array<float*, 3>& to, std::size_t k) {
   const Floats d;
   hn::StoreU(place.x, d, to[0] + k);
@@ -248,16 +227,12 @@ void store(const Place& place, const std::array<float*, 3>& to, std::size_t k) {
 void aim(const RayOrigins& from, std::size_t count, const RayArrays& rays) {
   const Floats d;
   const Ints di;
-  const bool planar = from.isPlanar();
+  const Entries frame(&from.frame());
+  const Place z = frame.place(offsetof(RayFrame, z) / sizeof(float));
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
     const Entries part = rays.part == nullptr
                              ? Entries(&from.part(0))
                              : Entries(&from.part(0), hn::LoadU(di, rays.part + k));
-    const Entries frame =
-        planar ? Entries(&from.frame(0))
-               : Entries(&from.frame(0),
-                         part.whole(offsetof(RayOrigins::Part, frame) / sizeof(float)));
-    const Place z = frame.place(offsetof(RayFrame, z) / sizeof(float));
     const Place point =
         pointsAt(part, hn::LoadU(d, rays.points[0] + k), hn::LoadU(d, rays.points[1] + k));
     store(add(point, times(set(kRayLift), z)), rays.origin, k);
@@ -271,8 +246,7 @@ void aim(const RayOrigins& from, std::size_t count, const RayArrays& rays) {
                                 times(over.y, frame.place(offsetof(RayFrame, y) / sizeof(float)))),
                             times(over.z, z));
     store(along, rays.direction, k);
-    const Int cell = planar ? zCurve(x, y) : octahedralCells(along);
-    hn::StoreU(hn::DemoteTo(Shorts(), cell), Shorts(), rays.cell + k);
+    hn::StoreU(hn::DemoteTo(Shorts(), zCurve(x, y)), Shorts(), rays.cell + k);
   }
 }
 

@@ -40,13 +40,13 @@ inline constexpr double kAimedShare = 0.95;
 
 /// Entries for each independent normal term, about, where entries count as the square of their sum
 /// over the sum of their squares: neighbours share the border that rays fall to either side of.
-/// (Of the rows of three scenes by others, three seeds each, at 1,000 unknowns and 1e-2, 98.9 to
+/// (Of the rows of three scenes by others, three seeds each, at 1,000 patches and 1e-2, 98.9 to
 /// 100% are below their figures with it, and 97.3% in the worst with 3.)
 inline constexpr double kEntriesATerm = 5;
 /// Rows with one degree of freedom each, as far off as foreseen, that all scenes have beside their
 /// own: next to nothing among hundreds, and what keeps two plates from stopping by chance.
 inline constexpr double kUsualRows = 4;
-/// Rows with fewer hits than this are unknown (RowAccuracy::isUnknown()): by their root, so few are
+/// Rows with fewer hits than this are patch (RowAccuracy::isUnknown()): by their root, so few are
 /// off by a quarter and more.
 inline constexpr double kFewHits = 16;
 /// Of n scrambled points in four dimensions about n^(3/4) lie in cells that a border runs through.

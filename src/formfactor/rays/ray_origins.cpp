@@ -13,23 +13,20 @@ namespace {
 
 constexpr float kBelowOne = 1 - 0x1p-24F;
 
-/// `across`: a direction off every normal, if possible, and the same for all patches of an unknown,
-/// so that frames of patches that bend a little turn a little.
-RayFrame frameAround(const Vec3& normal, Vec3 across) {
-  constexpr double kParallel = 0.1;
-  if (glm::length(glm::cross(across, normal)) < kParallel) across = axisAcross(normal);
-  const Vec3 x = glm::normalize(glm::cross(across, normal));
+RayFrame frameAround(const Vec3& normal) {
+  const Vec3 x = glm::normalize(glm::cross(axisAcross(normal), normal));
   return {glm::vec3(x), glm::vec3(glm::cross(normal, x)), glm::vec3(normal), 0.0F, 1.0F};
 }
 
 }  // namespace
 
-RayOrigins::RayOrigins(const PatchMesh& mesh, std::span<const Index> patches, double scale,
-                       const Vec3& middle) {
-  for (const Index patch : patches) addPatch(mesh, patch, scale, middle);
+RayOrigins::RayOrigins(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle)
+    : polygon_(mesh.polygon[patch]) {
+  if (polygon_ == kNone || !(mesh.area[patch] > 0)) return;
+  frame_ = frameAround(mesh.normal[patch]);
+  addParts(mesh, patch, scale, middle);
   if (parts_.empty()) return;
   const double sum = end_.back();
-  size_ = std::sqrt(0.5 * sum);  // parts count twice their area
   double begin = 0;
   for (double& end : end_) {
     end /= sum;
@@ -44,19 +41,13 @@ RayOrigins::RayOrigins(const PatchMesh& mesh, std::span<const Index> patches, do
   }
 }
 
-void RayOrigins::addPatch(const PatchMesh& mesh, std::size_t patch, double scale,
+void RayOrigins::addParts(const PatchMesh& mesh, std::size_t patch, double scale,
                           const Vec3& middle) {
-  if (mesh.polygon[patch] == kNone || !(mesh.area[patch] > 0)) return;
   const auto vertex = [&](Index v) { return mesh.vertices[v] * scale - middle; };
-  const Vec3 across = parts_.empty() ? axisAcross(mesh.normal[patch]) : Vec3(frames_[0].y);
-  const RayFrame frame = frameAround(mesh.normal[patch], across);
-  if (frames_.empty() || frames_.back().z != frame.z) frames_.push_back(frame);
   const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c, bool parallelogram) {
     const double area = glm::length(glm::cross(b - a, c - a)) * (parallelogram ? 2 : 1);
     if (!(area > 0)) return;
-    parts_.push_back({glm::vec3(a), glm::vec3(b - a), glm::vec3(c - a),
-                      std::uint32_t(frames_.size() - 1), mesh.polygon[patch],
-                      parallelogram ? 1u : 0u});
+    parts_.push_back({glm::vec3(a), glm::vec3(b - a), glm::vec3(c - a), parallelogram ? 1u : 0u});
     end_.push_back((end_.empty() ? 0.0 : end_.back()) + area);
   };
   const auto outline = mesh.outline(patch);
@@ -88,37 +79,31 @@ std::uint32_t RayOrigins::partAt(float x, float& within) const {
   return k;
 }
 
-void RayOrigins::addCorners(std::uint32_t k, std::vector<Vec3>& corners) const {
-  const Part& part = parts_[k];
-  const Vec3 corner(part.corner);
-  const Vec3 ab(part.ab);
-  const Vec3 ac(part.ac);
-  corners.insert(corners.end(), {corner, corner + ab, corner + ac});
-  if (part.parallelogram != 0) corners.push_back(corner + ab + ac);
+std::vector<Vec3> RayOrigins::corners() const {
+  std::vector<Vec3> corners;
+  for (const Part& part : parts_) {
+    const Vec3 corner(part.corner);
+    const Vec3 ab(part.ab);
+    const Vec3 ac(part.ac);
+    corners.insert(corners.end(), {corner, corner + ab, corner + ac});
+    if (part.parallelogram != 0) corners.push_back(corner + ab + ac);
+  }
+  return corners;
 }
 
-double RayOrigins::aim(std::span<const DirectionWindow> windows) {
-  double range = 0;
-  double half_turn = 0;
-  for (const DirectionWindow& window : windows) {
-    range = std::max(range, window.high - window.low);
-    half_turn = std::max(half_turn, window.half);
-  }
+double RayOrigins::aim(const DirectionWindow& window) {
   is_aimed_ = true;
-  range_ = float(range);
-  half_turn_ = float(half_turn);
-  for (std::size_t k = 0; k < frames_.size(); ++k) {
-    const double low = std::clamp(windows[k].low, 0.0, 1.0 - double(range_));
-    RayFrame& frame = frames_[k];
-    frame.low = float(low);
-    frame.across = float(1 - low);
-    const Vec3 x(frame.x);
-    const Vec3 y(frame.y);
-    const double cosine = std::cos(windows[k].centre);
-    const double sine = std::sin(windows[k].centre);
-    frame.x = glm::vec3(cosine * x + sine * y);
-    frame.y = glm::vec3(cosine * y - sine * x);
-  }
+  range_ = float(window.high - window.low);
+  half_turn_ = float(window.half);
+  const double low = std::clamp(window.low, 0.0, 1.0 - double(range_));
+  frame_.low = float(low);
+  frame_.across = float(1 - low);
+  const Vec3 x(frame_.x);
+  const Vec3 y(frame_.y);
+  const double cosine = std::cos(window.centre);
+  const double sine = std::sin(window.centre);
+  frame_.x = glm::vec3(cosine * x + sine * y);
+  frame_.y = glm::vec3(cosine * y - sine * x);
   return double(range_) * double(half_turn_) / std::numbers::pi;
 }
 

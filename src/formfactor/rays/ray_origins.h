@@ -1,10 +1,9 @@
-// Points over the area of all patches of an unknown, where its rays start.
+// Points over the area of a patch, where its rays start.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <span>
 #include <vector>
 
 #include "formfactor/rays/direction_window.h"
@@ -22,56 +21,49 @@ struct RayFrame {
   float across = 1;  ///< the squared cosine of the same, which is exact where the sine is near 1
 };
 
-/// The patches of one unknown as triangles and parallelograms to choose from by area. Coordinates
-/// are the mesh's times `scale` less `middle`, in single precision.
+/// A patch as triangles and parallelograms to choose from by area. Coordinates are the mesh's times
+/// `scale` less `middle`, in single precision.
 class RayOrigins {
  public:
-  /// `patches`: of the unknown, in the order in which they take up x (originOrder()).
-  RayOrigins(const PatchMesh& mesh, std::span<const Index> patches, double scale,
-             const Vec3& middle);
+  RayOrigins(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle);
 
   struct Part {
     glm::vec3 corner;
     glm::vec3 ab;  ///< edges that leave the corner
     glm::vec3 ac;
-    std::uint32_t frame;
-    Index polygon;                ///< of the mesh
     std::uint32_t parallelogram;  ///< 1, or 0 for a triangle: kernels read whole words
   };
 
   bool empty() const { return parts_.empty(); }
-  /// The side of a square of as much area.
-  double size() const { return size_; }
-  /// True if all lies in one plane: all rays have frame(0) and leave from polygon(0).
-  bool isPlanar() const { return frames_.size() == 1; }
-  std::size_t frames() const { return frames_.size(); }
-  const RayFrame& frame(std::uint32_t k) const { return frames_[k]; }
+  const RayFrame& frame() const { return frame_; }
+  /// That the patch is in.
+  Index polygon() const { return polygon_; }
   const Part& part(std::uint32_t k) const { return parts_[k]; }
   std::size_t parts() const { return parts_.size(); }
 
   /// The part that x in [0, 1) falls on, and the place in its own range. Parts have shares of x by
   /// their area, so that points spread evenly over x spread evenly over all of it.
   std::uint32_t partAt(float x, float& within) const;
-  /// Adds the corners of a part.
-  void addCorners(std::uint32_t part, std::vector<Vec3>& corners) const;
+  /// Of all parts.
+  std::vector<Vec3> corners() const;
 
-  /// Rays go into a window of each frame alone; all get the size of the largest. Some of them must
-  /// have a share above 0. Returns the share of the hemisphere that they take up.
-  double aim(std::span<const DirectionWindow> windows);
+  /// Rays go into the window alone, which has a share above 0. Returns the share of the hemisphere
+  /// that it takes up.
+  double aim(const DirectionWindow& window);
   bool isAimed() const { return is_aimed_; }
-  /// Of the windows: the range of squared sines of elevations, and half that of azimuths.
+  /// Of the window: the range of squared sines of elevations, and half that of azimuths.
   float range() const { return range_; }
   float halfTurn() const { return half_turn_; }
 
  private:
-  void addPatch(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle);
+  void addParts(const PatchMesh& mesh, std::size_t patch, double scale, const Vec3& middle);
 
-  double size_ = 0;
+  Index polygon_;
+  RayFrame frame_{};
   bool is_aimed_ = false;
   float range_ = 1;
   float half_turn_ = 0;
   std::vector<Part> parts_;
-  std::vector<RayFrame> frames_;
   std::vector<double> end_;     ///< of each part's share of x; while adding, areas summed up
   std::vector<float> first_;    ///< where each part's share begins
   std::vector<float> stretch_;  ///< 1 / share

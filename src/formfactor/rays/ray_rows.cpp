@@ -253,10 +253,10 @@ void addAlone(const RayRow& row, std::size_t e, ReplicateSums& sums) {
   sums.add(first, second, foreseenVariance(mean, hits, hitsVariance(mean, hits)));
 }
 
-/// Adds the black backs that a row sees, whose columns come from `unknowns` on.
-void addBacks(const RayRow& row, std::size_t unknowns, RowAccuracy& accuracy) {
+/// Adds the black backs that a row sees, whose columns come from `patches` on.
+void addBacks(const RayRow& row, std::size_t patches, RowAccuracy& accuracy) {
   ReplicateSums backs;
-  for (std::size_t e = row.columns.size(); e-- > 0 && row.columns[e] >= unknowns;) {
+  for (std::size_t e = row.columns.size(); e-- > 0 && row.columns[e] >= patches;) {
     addAlone(row, e, backs);
   }
   const RowAccuracy of_backs = backs.accuracy();
@@ -273,7 +273,7 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
   }
   RowAccuracy accuracy = sums.accuracy();
   if (!merged.all_known) {
-    addBacks(own, merged.unknowns, accuracy);
+    addBacks(own, merged.patches, accuracy);
     accuracy.rays = own.counted();
     // Not those of other rows: however often one hits it, it says nothing of the rest.
     accuracy.hits = accuracy.rays * merged.counted;
@@ -289,15 +289,15 @@ RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area) 
   return accuracy;
 }
 
-RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns) {
+RowAccuracy accuracyAlone(const RayRow& row, std::size_t patches) {
   ReplicateSums sums;
   double hits = 0;
-  for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < unknowns; ++e) {
+  for (std::size_t e = 0; e < row.columns.size() && row.columns[e] < patches; ++e) {
     addAlone(row, e, sums);
     hits += double(row.hits[e][0]) + double(row.hits[e][1]);
   }
   RowAccuracy accuracy = sums.accuracy();
-  addBacks(row, unknowns, accuracy);
+  addBacks(row, patches, accuracy);
   accuracy.rays = row.counted();
   accuracy.hits = hits;
   return accuracy;

@@ -1,4 +1,4 @@
-// The counts of rays, a row an unknown, and the accuracy of the matrix made from them.
+// The counts of rays, a row a patch, and the accuracy of the matrix made from them.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ inline constexpr int kReplicates = 2;
 /// RayRow::window of a row that is proved to see nothing: none of its rays needs to be traced.
 inline constexpr double kSeesNothing = 0x1p-100;
 
-/// Counts of where the rays of one unknown ended. Columns are positions in the order of the matrix,
-/// then K + s for the black back of surface s; strictly increasing.
+/// Counts of where the rays of one patch ended. Columns are positions in the order of the matrix,
+/// then N + s for the black back of surface s; strictly increasing.
 struct RayRow {
   std::uint32_t rays = 0;  ///< cast in each replicate
   std::array<std::uint32_t, kReplicates> sky{};
@@ -60,9 +60,9 @@ struct RayRow {
 /// variances that independent rays would have, A_i G_ij / n_i.
 struct MergedRow {
   std::size_t position = 0;
-  std::size_t unknowns = 0;        ///< K
+  std::size_t patches = 0;         ///< N
   std::span<const Index> columns;  ///< positions that one end or the other has hit, increasing
-  /// F from this row's unknown to the columns, by the first and the second replicate; the same
+  /// F from this row's patch to the columns, by the first and the second replicate; the same
   /// value twice if it is known.
   std::span<const std::array<double, kReplicates>> factors;
   /// Variances foreseen of the factors' means, but for a factor that all rows share
@@ -102,6 +102,6 @@ class UsualNorm {
 RowAccuracy accuracyOf(const MergedRow& merged, const RayRow& own, double area);
 
 /// The same for a row by itself, before it is merged with the others' counts.
-RowAccuracy accuracyAlone(const RayRow& row, std::size_t unknowns);
+RowAccuracy accuracyAlone(const RayRow& row, std::size_t patches);
 
 }  // namespace radiosity

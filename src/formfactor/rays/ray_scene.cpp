@@ -10,8 +10,7 @@
 #include "base/geometry/box_tree.h"
 #include "formfactor/border_share.h"
 #include "formfactor/patch_seed.h"
-#include "formfactor/row_accounts.h"
-#include "mesh/clusters/cluster_means.h"
+#include "mesh/patches/canonical_order.h"
 #include "mesh/patches/enclosures.h"
 
 namespace radiosity {
@@ -48,10 +47,10 @@ bool standsBeside(const PatchMesh& mesh, std::size_t patch, double width, const 
   return found;
 }
 
-/// By unknown: the share of its area that lies beside something, within `width` of a border; 0 but
+/// By patch: the share of its area that lies beside something, within `width` of a border; 0 but
 /// for patches that are hardly wider.
 std::vector<double> unresolvedShares(const PatchMesh& mesh, double width) {
-  std::vector<double> shares(mesh.unknowns(), 0.0);
+  std::vector<double> shares(mesh.size(), 0.0);
   std::vector<std::pair<std::size_t, double>> narrow;
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const double share = borderShare(mesh, i, width);
@@ -61,11 +60,8 @@ std::vector<double> unresolvedShares(const PatchMesh& mesh, double width) {
   std::vector<Box3> boxes;
   for (std::size_t i = 0; i < mesh.size(); ++i) boxes.push_back(boxOfPatch(mesh, i));
   const BoxTree patches(boxes);
-  const std::vector<double> areas = unknownAreas(mesh);
   for (const auto& [i, share] : narrow) {
-    if (!standsBeside(mesh, i, width, patches)) continue;
-    const std::size_t k = mesh.unknownOf(i);
-    shares[k] += share * mesh.area[i] / areas[k];
+    if (standsBeside(mesh, i, width, patches)) shares[i] = share;
   }
   return shares;
 }
@@ -80,18 +76,16 @@ Replicates& emptyCounts(std::size_t items) {
 
 }  // namespace
 
-RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mesh) {
-  UnknownOrder by_identity = unknownOrder(mesh);
-  order_ = std::move(by_identity.unknown);
-  position_.resize(order_.size());
-  for (std::size_t k = 0; k < order_.size(); ++k) position_[order_[k]] = Index(k);
-  const std::vector<double> areas = unknownAreas(mesh);
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    area_.push_back(areas[order_[k]]);
-    seed_.push_back(patchSeed(mesh, by_identity.first_patch[k], with_seed));
-  }
+RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed)
+    : caster_(mesh), order_(canonicalOrder(mesh)), position_(order_.size()) {
   const std::vector<double> unresolved = unresolvedShares(mesh, kUnresolved / caster_.scale());
-  for (const Index unknown : order_) unresolved_.push_back(unresolved[unknown]);
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const Index patch = order_[k];
+    position_[patch] = Index(k);
+    area_.push_back(mesh.area[patch]);
+    seed_.push_back(patchSeed(mesh, patch, with_seed));
+    unresolved_.push_back(unresolved[patch]);
+  }
   std::optional<Enclosures> found;
   if (!enclosuresOf(mesh, found).closed) windows_.emplace(caster_.embree());
 }
@@ -99,12 +93,12 @@ RayScene::RayScene(const PatchMesh& mesh, std::uint64_t with_seed) : caster_(mes
 /// Aims rays at what they can meet where that takes up little of the hemisphere. Returns the share
 /// of it that they then go into.
 double RayScene::aim(RayOrigins& origins) const {
-  if (!windows_ || !caster_.canAim(origins)) return 1;
-  const auto windows = windows_->of(origins);
-  if (!windows) return 1;
-  const bool is_alone = std::all_of(windows->begin(), windows->end(),
-                                    [](const DirectionWindow& window) { return window.empty(); });
-  return is_alone ? kSeesNothing : std::max(origins.aim(*windows), kSeesNothing);
+  if (!windows_) return 1;
+  if (origins.empty()) return kSeesNothing;
+  if (!caster_.canAim(origins)) return 1;
+  const auto window = windows_->of(origins);
+  if (!window) return 1;
+  return window->empty() ? kSeesNothing : std::max(origins.aim(*window), kSeesNothing);
 }
 
 void RayScene::cast(std::size_t position, std::uint32_t rays, RayRow& row,

@@ -13,7 +13,7 @@
 
 namespace radiosity {
 
-/// The caster of a mesh, and its unknowns in the order of the matrix.
+/// The caster of a mesh, and its patches in the order of the matrix.
 class RayScene {
  public:
   /// `mesh` is kept by reference.
@@ -21,9 +21,9 @@ class RayScene {
 
   const RayCaster& caster() const { return caster_; }
   std::size_t size() const { return order_.size(); }
-  /// The unknown at each position.
+  /// The patch at each position.
   const std::vector<Index>& order() const { return order_; }
-  /// The position of each unknown.
+  /// The position of each patch.
   const std::vector<Index>& position() const { return position_; }
   /// Areas by position, m^2.
   const std::vector<double>& area() const { return area_; }
@@ -43,7 +43,7 @@ class RayScene {
 
   RayCaster caster_;
   std::vector<Index> order_;
-  std::vector<Index> position_;  ///< of each unknown in it
+  std::vector<Index> position_;  ///< of each patch in it
   std::vector<double> area_;
   std::vector<double> unresolved_;
   std::vector<std::uint64_t> seed_;    ///< by position

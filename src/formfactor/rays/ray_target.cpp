@@ -24,17 +24,16 @@ struct RayTargets::GridPlace {
   std::int32_t first;
 };
 
-RayTargets::GridPlace RayTargets::append(const PatchGrid& grid, const ItemOf& item_of) {
+RayTargets::GridPlace RayTargets::append(const PatchGrid& grid) {
   const std::size_t cells_before = cells_.size();
   const std::size_t nodes_before = nodes_.size();
   std::int32_t least = std::numeric_limits<std::int32_t>::max();
   std::int32_t most = 0;
   const auto place = [&](std::int32_t entry) {
     if (entry < 0) return ~(~entry + std::int32_t(nodes_before));
-    const auto item = std::int32_t(item_of(std::uint32_t(entry)));
-    least = std::min(least, item);
-    most = std::max(most, item);
-    return item;
+    least = std::min(least, entry);
+    most = std::max(most, entry);
+    return entry;
   };
   for (const std::int32_t entry : grid.cells()) cells_.push_back(place(entry));
   for (CellNode node : grid.nodes()) {
@@ -43,23 +42,22 @@ RayTargets::GridPlace RayTargets::append(const PatchGrid& grid, const ItemOf& it
     nodes_.push_back(node);
   }
   if (least != most) return {false, std::int32_t(cells_before)};
-  // All patches of this side count for one item: there is nothing to look up.
+  // The whole side counts for one item: there is nothing to look up.
   cells_.resize(cells_before);
   nodes_.resize(nodes_before);
   return {true, least};
 }
 
-RayTargets::RayTargets(const ViewScene& scene, const EmbreeScene& embree, const ItemOf& item_of) {
+RayTargets::RayTargets(const ViewScene& scene, const EmbreeScene& embree) {
   std::vector<GridPlace> place_of;
   place_of.reserve(scene.grids.size());
-  for (const PatchGrid& grid : scene.grids) place_of.push_back(append(grid, item_of));
+  for (const PatchGrid& grid : scene.grids) place_of.push_back(append(grid));
   const auto targetOf = [&](std::size_t triangle, const ViewPolygon& polygon,
                             const PolygonSide& side) {
     RayTarget target;
     target.polygon = polygon.source;
     if (side.grid == kNone || place_of[side.grid].single) {
-      target.first =
-          side.grid == kNone ? std::int32_t(item_of(side.item)) : place_of[side.grid].first;
+      target.first = side.grid == kNone ? std::int32_t(side.item) : place_of[side.grid].first;
       return target;
     }
     const PatchGrid& grid = scene.grids[side.grid];

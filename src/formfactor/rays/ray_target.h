@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,8 +12,9 @@
 
 namespace radiosity {
 
-/// One side of a triangle: the item that it counts for, or the map from a hit's position (Embree's
-/// s and t) to its polygon's grid: u[0] + u[1] s + u[2] t. Vector kernels read it word by word.
+/// One side of a triangle: the item (of the ViewScene) that it counts for, or the map from a hit's
+/// position (Embree's s and t) to its polygon's grid: u[0] + u[1] s + u[2] t. Vector kernels read
+/// it word by word.
 struct RayTarget {
   std::array<float, 3> u{};
   std::array<float, 3> v{};
@@ -35,9 +35,7 @@ struct RayEnds {
 /// The targets of all triangles of a scene, with the cells and trees of all grids behind them.
 class RayTargets {
  public:
-  /// The item that rays count for, of one of the ViewScene's.
-  using ItemOf = std::function<std::uint32_t(std::uint32_t)>;
-  RayTargets(const ViewScene& scene, const EmbreeScene& embree, const ItemOf& item_of);
+  RayTargets(const ViewScene& scene, const EmbreeScene& embree);
 
   /// `side`: 0 the front, 1 the back; s, t: Embree's. As PolygonSide::item.
   std::uint32_t itemAt(std::uint32_t triangle, int side, float s, float t) const;
@@ -59,7 +57,7 @@ class RayTargets {
 
  private:
   struct GridPlace;  // of a grid behind the others
-  GridPlace append(const PatchGrid& grid, const ItemOf& item_of);
+  GridPlace append(const PatchGrid& grid);
   std::uint32_t leafOf(std::int32_t entry, float u, float v) const;
 
   std::vector<RayTarget> targets_;

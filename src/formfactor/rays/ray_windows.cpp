@@ -173,18 +173,11 @@ RayWindows::RayWindows(const EmbreeScene& embree) : embree_(embree) {
   tree_ = BoxTree(boxes);
 }
 
-std::optional<std::vector<DirectionWindow>> RayWindows::of(const RayOrigins& origins) const {
-  std::vector<DirectionWindow> windows;
-  std::uint32_t part = 0;  // those of a frame follow each other
-  for (std::uint32_t k = 0; k < origins.frames(); ++k) {
-    std::vector<Vec3> corners;
-    for (; part < origins.parts() && origins.part(part).frame == k; ++part) {
-      origins.addCorners(part, corners);
-    }
-    windows.push_back(Search(origins.frame(k), corners).windowOf(tree_, embree_));
-    if (windows.back().share() > kMostShare) return std::nullopt;
-  }
-  return windows;
+std::optional<DirectionWindow> RayWindows::of(const RayOrigins& origins) const {
+  const DirectionWindow window =
+      Search(origins.frame(), origins.corners()).windowOf(tree_, embree_);
+  if (window.share() > kMostShare) return std::nullopt;
+  return window;
 }
 
 }  // namespace radiosity

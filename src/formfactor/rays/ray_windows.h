@@ -22,9 +22,9 @@ class RayWindows {
   /// `embree` is kept by reference.
   explicit RayWindows(const EmbreeScene& embree);
 
-  /// A window for each frame, with all directions in which rays from places of that frame can meet
-  /// a triangle, and more. None if one of them has more than kMostShare of its hemisphere.
-  std::optional<std::vector<DirectionWindow>> of(const RayOrigins& origins) const;
+  /// A window with all directions in which rays can meet a triangle, and more. None if it has more
+  /// than kMostShare of the hemisphere.
+  std::optional<DirectionWindow> of(const RayOrigins& origins) const;
 
   std::size_t bytes() const { return tree_.bytes(); }
 

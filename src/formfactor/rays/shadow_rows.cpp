@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "formfactor/patch_seed.h"
-#include "formfactor/unknown_rows.h"
+#include "formfactor/wanted_rows.h"
 #include "visibility/clipping/point_to_polygon.h"
 
 namespace radiosity {
@@ -57,7 +57,7 @@ ShadowRows::ShadowRows(const PatchMesh& mesh, std::vector<Index> wanted, std::ui
       rays_(mesh) {
   for (Index i = 0; i < mesh.size(); ++i) {
     if (mesh.polygon[i] == kNone || !(mesh.area[i] > 0)) continue;
-    if (!std::ranges::binary_search(wanted_, mesh.unknownOf(i))) continue;
+    if (!std::ranges::binary_search(wanted_, i)) continue;
     emitter_of_[i] = Index(emitters_.size());
     double radius = 0;
     for (const Index corner : mesh.outline(i)) {
@@ -80,7 +80,7 @@ double ShadowRows::rays() const {
 
 std::size_t ShadowRows::bytes() const {
   return kBlock * emitters_.size() * sizeof(Share) +
-         UnknownRows::bytes(wanted_.size(), mesh_.unknowns());
+         WantedRows::bytes(wanted_.size(), mesh_.size());
 }
 
 double ShadowRows::seconds(Progress& progress) const {
@@ -101,7 +101,7 @@ double ShadowRows::seconds(Progress& progress) const {
 }
 
 std::vector<KnownRow> ShadowRows::compute(Progress& progress) const {
-  UnknownRows rows(mesh_, wanted_);
+  WantedRows rows(mesh_.size(), wanted_);
   progress.begin("form factors of emitters", mesh_.size());
   for (std::size_t begin = 0; begin < mesh_.size(); begin += kBlock) {
     addBlock(begin, std::min(kBlock, mesh_.size() - begin), rows, progress);
@@ -116,7 +116,7 @@ std::vector<KnownRow> ShadowRows::compute(Progress& progress) const {
   return rows.take();
 }
 
-void ShadowRows::addBlock(std::size_t begin, std::size_t count, UnknownRows& rows,
+void ShadowRows::addBlock(std::size_t begin, std::size_t count, WantedRows& rows,
                           Progress& progress) const {
   std::vector<Share> shares(count * emitters_.size());
   const auto of = [&](std::size_t k) {

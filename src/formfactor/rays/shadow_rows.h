@@ -1,4 +1,4 @@
-// The rows of a few unknowns, by shadow rays from all others.
+// The rows of a few patches, by shadow rays from all others.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace radiosity {
 
-class UnknownRows;
+class WantedRows;
 
 /// What each patch sees of some that emit, where exact rows past what stands in between take too
 /// long. At points of the patch Lambert's formula tells what there is; rays from there to points
@@ -22,7 +22,7 @@ class UnknownRows;
 /// emitters, or .2% of what it would see of them with nothing in between.
 class ShadowRows {
  public:
-  /// `wanted`: unknowns, each once. `mesh` is kept by reference.
+  /// `wanted`: patches, each once. `mesh` is kept by reference.
   ShadowRows(const PatchMesh& mesh, std::vector<Index> wanted, std::uint64_t seed);
 
   /// Rays of compute(), at least.
@@ -31,7 +31,7 @@ class ShadowRows {
   double seconds(Progress& progress) const;
   /// Bytes held by compute() beside this, about.
   std::size_t bytes() const;
-  /// A row for each wanted unknown. The same bits for any number of threads. Throws Cancelled.
+  /// A row for each wanted patch. The same bits for any number of threads. Throws Cancelled.
   std::vector<KnownRow> compute(Progress& progress) const;
 
  private:
@@ -46,7 +46,7 @@ class ShadowRows {
   };
   struct Found;
 
-  void addBlock(std::size_t begin, std::size_t count, UnknownRows& rows, Progress& progress) const;
+  void addBlock(std::size_t begin, std::size_t count, WantedRows& rows, Progress& progress) const;
   void receive(Index patch, std::span<Share> shares) const;
   bool faces(Index patch, const Emitter& emitter) const;
   std::size_t firstLevel() const;

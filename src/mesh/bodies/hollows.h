@@ -13,7 +13,7 @@ namespace radiosity {
 /// Dark hollows: spaces closed on all sides, for more than half of their area by faces seen from
 /// behind, without a light in them. A building without a floor on a street, or a cupboard without a
 /// bottom, makes one with the ground in it. Patches there would be dark and see nothing but black
-/// backs, and where patches share unknowns they would take light from those outside.
+/// backs.
 class Hollows {
  public:
   Hollows(const Scene& scene, const InputFaces& input, const std::vector<Plane>& planes,

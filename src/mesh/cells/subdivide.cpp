@@ -13,7 +13,6 @@
 #include "mesh/cells/join_cells.h"
 #include "mesh/cells/polygon_cells.h"
 #include "mesh/cells/size_search.h"
-#include "mesh/clusters/cluster_patches.h"
 #include "mesh/patches/mesh_figures.h"
 #include "mesh/patches/patch_arrays.h"
 #include "mesh/polygons/complex.h"
@@ -27,9 +26,11 @@ namespace {
 // of small polygons use up the patches asked for.
 constexpr double kLargestSize = 3.0;
 constexpr double kMuchMore = 1.15;
-// The size of cells if patches share unknowns, relative to an even division of all area: a wall
-// still has several clusters, and other patches grow by a tenth or two.
-constexpr double kSharedSize = 1.5;
+// If polygons alone are this many times the patches asked for, their number no longer counts: cells
+// are then this large, relative to an even division of all area, so that walls are still cut, and
+// other patches grow by a tenth or two.
+constexpr double kFarMore = 1.2;
+constexpr double kSizeAmongMany = 1.5;
 // The least distances of cuts opposite of vertices across narrow strips, in widths: angles of
 // patches there are at least atan(1 / spacing). We take the first that is affordable.
 constexpr double kSpacings[] = {1.0, 1.5, 2.0, 2.5, 3.0, 4.0};
@@ -252,10 +253,10 @@ void meetCountJoined(Subdivision& subdivision, double start, double wanted) {
   if (size != last) count(size);
 }
 
-/// Subdivides for patches that will share unknowns: a small polygon needs only one patch, so points
-/// inside that improve the angles of its cells would be for nothing, and large polygons must not be
-/// cut more coarsely because of small ones.
-void cutToShare(Subdivision& subdivision, double size) {
+/// Subdivides to a size, where small polygons are more than the patches asked for: points inside
+/// these that improve the angles of their cells would be for nothing, and large polygons must not
+/// be cut more coarsely because of small ones.
+void cutAmongMany(Subdivision& subdivision, double size) {
   subdivision.run({size, std::numeric_limits<double>::infinity(), false}, Rounding::nearest,
                   kNoOpposites);
   subdivision.join(size);
@@ -284,6 +285,13 @@ void noteWhole(const std::set<Index>& polygons, const CoarseComplex& complex, Me
                                      "near to each other",
                                      report.surfaces[surface].name, count)});
   }
+}
+
+void noteMore(std::size_t wanted, std::size_t polygons, const PatchMesh& mesh, MeshReport& report) {
+  if (double(polygons) <= kFarMore * double(wanted)) return;
+  report.notes.push_back(
+      {Severity::info, fmt::format("{} patches: {} were asked for, but there are {} planar pieces",
+                                   mesh.size(), wanted, polygons)});
 }
 
 void refuseTooMany(double area, double size) {
@@ -315,13 +323,13 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
     // A wide polygon has area / size^2 cells, a thin one has half its outline / size. A quarter of
     // the outline suits a single square, too.
     const double start = std::max(std::sqrt(area / wanted), outlineOf(complex) / (4 * wanted));
-    const double most = kMostPatchesKept * wanted;
+    const double most = kFarMore * wanted;
     if (double(complex.polygons.size()) <= most) {
       meetCount(subdivision, start, wanted);
       if (subdivision.count() > kMuchMore * wanted) meetCountJoined(subdivision, start, wanted);
     }
     if (!(subdivision.count() > 0 && subdivision.count() <= most)) {
-      cutToShare(subdivision, kSharedSize * std::sqrt(area / wanted));
+      cutAmongMany(subdivision, kSizeAmongMany * std::sqrt(area / wanted));
     }
   }
   PatchMesh mesh =
@@ -335,6 +343,7 @@ PatchMesh subdivide(const CoarseComplex& complex, const Scene& scene, const Mesh
   noteTJunctions(mesh, complex.coincidence, report);
   accountForCells(complex, mesh, report);
   noteWhole(subdivision.whole(), complex, report);
+  if (options.max_edge == 0) noteMore(options.patches, complex.polygons.size(), mesh, report);
   return mesh;
 }
 

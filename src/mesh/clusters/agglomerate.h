@@ -38,8 +38,6 @@ class Agglomeration {
   /// `unit`: a typical length of the costs, so that they fit into 32 bits.
   Agglomeration(std::vector<Agglomerate> pieces, double bend, double unit);
 
-  /// Joins the wholes of two pieces, whatever it costs.
-  void join(Index a, Index b);
   /// Offers a pair that may be joined, by the numbers of two pieces.
   void offer(Index a, Index b);
   /// Joins offered pairs, the cheapest first, until `wanted` wholes or no pairs are left. Unused
@@ -53,6 +51,7 @@ class Agglomeration {
   const Agglomerate& at(Index k) const { return sums_[k]; }
 
  private:
+  void join(Index a, Index b);
   struct Offer {
     float cost;
     Index a, b;  ///< a < b

@@ -1,21 +1,15 @@
 #include "mesh/clusters/cluster_patches.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 #include <numeric>
-#include <ranges>
 #include <tuple>
 #include <utility>
 
 #include "base/parallel.h"
 #include "mesh/clusters/agglomerate.h"
-#include "mesh/clusters/canonical_order.h"
 #include "mesh/clusters/nearest_tree.h"
-#include "radiosity/spelling.h"
+#include "mesh/patches/canonical_order.h"
 
 namespace radiosity {
 
@@ -94,7 +88,6 @@ class FrontClusters {
     std::vector<Agglomerate> pieces = agglomeratesOf(mesh, fronts);
     for (const Agglomerate& piece : pieces) area_ += piece.area;
     parts_ = Agglomeration(std::move(pieces), kBend * sideOf(wanted), sideOf(wanted));
-    joinShared();
   }
 
   /// Finds neighbours anew whenever half of the clusters are gone. Every cluster that is not alone
@@ -114,17 +107,6 @@ class FrontClusters {
   Index of(Index k) { return parts_.of(k); }
 
  private:
-  /// Patches that share an unknown stay together.
-  void joinShared() {
-    if (!mesh_.clusters) return;
-    std::vector<Index> first(mesh_.unknowns(), kNone);
-    for (Index k = 0; k < fronts_.size(); ++k) {
-      Index& of_unknown = first[mesh_.unknownOf(fronts_[k])];
-      if (of_unknown == kNone) of_unknown = k;
-      parts_.join(of_unknown, k);
-    }
-  }
-
   /// The side of a square with a `count`-th of all area.
   double sideOf(std::size_t count) const { return std::sqrt(area_ / double(count)); }
 
@@ -194,22 +176,7 @@ std::size_t renumber(std::vector<Index>& keys, std::size_t limit) {
   return count;
 }
 
-/// The largest angle, in degrees, between the normal of a patch and the mean normal of its cluster.
-double widestCone(const PatchMesh& mesh, const PatchClusters& clusters) {
-  double widest = 0;
-  for (std::size_t c = 0; c < clusters.size(); ++c) {
-    Vec3 mean(0.0);
-    for (const Index i : clusters.patchesOf(c)) mean += mesh.area[i] * mesh.normal[i];
-    for (const Index i : clusters.patchesOf(c)) {
-      const Vec3& n = mesh.normal[i];
-      widest = std::max(widest, std::atan2(glm::length(glm::cross(mean, n)), glm::dot(mean, n)));
-    }
-  }
-  return glm::degrees(widest);
-}
-
-}  // namespace
-
+/// Makes `count` clusters from the cluster of each patch. No cluster is empty.
 PatchClusters clustersOf(std::vector<Index> of_patch, std::size_t count) {
   PatchClusters clusters;
   clusters.of_patch = std::move(of_patch);
@@ -224,9 +191,11 @@ PatchClusters clustersOf(std::vector<Index> of_patch, std::size_t count) {
   return clusters;
 }
 
+}  // namespace
+
 PatchClusters clusterPatches(const PatchMesh& mesh, std::size_t wanted, Progress& progress) {
   const std::vector<Index> fronts = frontsInOrder(mesh);
-  progress.begin("sharing unknowns", fronts.size() - std::min(wanted, fronts.size()));
+  progress.begin("joining patches", fronts.size() - std::min(wanted, fronts.size()));
   FrontClusters parts(mesh, fronts, wanted);
   parts.run(progress);
   progress.end();
@@ -241,33 +210,6 @@ PatchClusters clusterPatches(const PatchMesh& mesh, std::size_t wanted, Progress
   }
   const std::size_t count = renumber(key, 2 * fronts.size() + mesh.size());
   return clustersOf(std::move(key), count);
-}
-
-void shareUnknowns(PatchMesh& mesh, const MeshOptions& options, MeshReport& report,
-                   Progress& progress) {
-  const double most = kMostPatchesKept * double(options.patches);
-  if (double(mesh.frontCount()) <= most) return;
-  PatchClusters clusters = clusterPatches(mesh, options.patches, progress);
-  const auto shared = std::size_t(std::ranges::count_if(
-      std::views::iota(std::size_t(0), clusters.size()),
-      [&](std::size_t c) { return mesh.side[clusters.patchesOf(c)[0]] == 0; }));
-  if (double(shared) > most) {
-    report.notes.push_back(
-        {Severity::warning,
-         fmt::format("{} cannot be kept: the scene has {} surfaces, each at least one "
-                     "unknown; join surfaces in the file, or ask for {} or more",
-                     spelled("patches", fmt::format("{}", options.patches)), shared, shared)});
-  }
-  if (clusters.size() == mesh.size()) return;
-  mesh.clusters = std::move(clusters);
-  report.clusters = mesh.clusters->size();
-  report.widest_cone = widestCone(mesh, *mesh.clusters);
-  report.notes.push_back(
-      {Severity::info,
-       fmt::format("{} patches share {} unknowns: {} were asked for; light is solved "
-                   "for clusters of patches, whose normals are up to {:.0f} degrees "
-                   "off their mean",
-                   mesh.size(), report.clusters, options.patches, report.widest_cone)});
 }
 
 }  // namespace radiosity

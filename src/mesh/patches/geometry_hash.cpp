@@ -19,7 +19,6 @@ std::string geometryHash(const PatchMesh& mesh) {
   hash.array(mesh.polygons.corners);
   hash.array(mesh.polygons.back_is_patch);
   if (mesh.coincidence) hash.bytes(&*mesh.coincidence, sizeof *mesh.coincidence);
-  if (mesh.clusters) hash.array(mesh.clusters->of_patch);
   for (const std::string& name : mesh.surface_names) hash.text(name);
   return hash.hex();
 }

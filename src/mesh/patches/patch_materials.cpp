@@ -150,21 +150,17 @@ PatchMaterials patchMaterials(const Scene& scene, const PatchMesh& mesh) {
   return result;
 }
 
-std::vector<Index> emittingUnknowns(const PatchMesh& mesh, const PatchMaterials& materials) {
+std::vector<Index> emittingPatches(const PatchMesh& mesh, const PatchMaterials& materials) {
   materials.requireSizes(mesh.size());
   const auto bands = std::size_t(materials.bands);
-  std::vector<std::uint8_t> emits(mesh.unknowns(), 0);
-  for (std::size_t i = 0; i < mesh.size(); ++i) {
+  std::vector<Index> patches;
+  for (Index i = 0; i < mesh.size(); ++i) {
     const auto emission = std::span(materials.emission).subspan(i * bands, bands);
     if (std::any_of(emission.begin(), emission.end(), [](double m) { return m > 0; })) {
-      emits[mesh.unknownOf(i)] = 1;
+      patches.push_back(i);
     }
   }
-  std::vector<Index> unknowns;
-  for (Index u = 0; u < emits.size(); ++u) {
-    if (emits[u] != 0) unknowns.push_back(u);
-  }
-  return unknowns;
+  return patches;
 }
 
 }  // namespace radiosity

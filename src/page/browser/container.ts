@@ -33,11 +33,10 @@ export interface Header {
   program: string;
   bands: number;
   patches: number;
-  unknowns: number;
+  nodes: number; // the patches, or clusters of these
   method: string;
   tolerance: number | null; // hemicubes have none
   closed: boolean;
-  sees_out: boolean; // the sky, or backs
   exposure: number; // pictures show radiance * 2^exposure
   lights: LightInfo[];
   camera: { eye: Rgb; target: Rgb; up: Rgb; fov: number };
@@ -55,22 +54,7 @@ export interface Header {
   arrays: Record<string, { type: string; offset: number; length: number }>;
 }
 
-/** Sums over rays, for patches that share unknowns (the format is in ../README.md). */
-export interface SeenData {
-  begin: Uint32Array; // K+1
-  item: Uint32Array; // patches; N: the sky
-  hits: Uint16Array;
-  rays: Uint32Array; // K
-  axes: Uint8Array; // K
-  code: Uint16Array; // (code - 32768) / 32767 * scale
-  scale: Float32Array; // of each axis of each unknown
-  patchAxis: Float32Array; // patch by patch, of each axis of its unknown
-  unknown: Uint32Array; // N
-  area: Float32Array; // N, m^2
-  seesOut: boolean;
-}
-
-/** All of a page's data; N patches, K unknowns, T triangles, S shading vertices. */
+/** All of a page's data; N patches, K nodes, T triangles, S shading vertices. */
 export interface PageData {
   header: Header;
   position: Float32Array; // P*3
@@ -89,19 +73,20 @@ export interface PageData {
   area: Float32Array; // N, m^2
   surface: Uint32Array; // N
   side: Uint8Array; // N; 0 front, 1 back
-  unknown: Uint32Array; // N
+  node: Uint32Array; // N
   emission: Float32Array; // N*3, W/m^2
   reflectance: Float32Array; // N*3
   irradiance: Float32Array; // N*3, W/m^2
-  unknownArea: Float32Array; // K
+  nodeArea: Float32Array; // K
   rowSum: Float32Array; // K
-  lightIrradiance: Float32Array[]; // K*3 by each light, W/m^2
+  lightIrradiance: Float32Array[]; // N*3 by each light, W/m^2
+  /** N*3 by what emits of each material, W/m^2; null: it is in the form factors alone. */
+  emittedIrradiance: (Float32Array | null)[];
   rowError: Float32Array; // K; empty: the method has none
   factorBegin: Uint32Array; // K+1
   factorColumn: Uint32Array; // empty: rows hold every column from the diagonal on
   factorCode: Uint16Array;
-  order: Uint32Array | null; // K: the order of unknowns in the program's Gauss-Seidel
-  seen: SeenData | null; // if patches share unknowns
+  order: Uint32Array | null; // K: the order of nodes in the program's Gauss-Seidel
   elementPosition: Float32Array;
   elementTriangle: Uint32Array;
   elementLight: Float32Array; // radiosity at each element vertex
@@ -157,27 +142,8 @@ function requireBelow(name: string, indices: ArrayLike<number>, limit: number): 
   }
 }
 
-function checkSeen(seen: SeenData, patches: number, unknowns: number): void {
-  const { axes, begin } = seen;
-  let ofItems = 0, ofUnknowns = 0, ofPatches = 0;
-  axes.forEach((count, k) => {
-    ofUnknowns += count;
-    ofItems += count * (begin[k + 1]! - begin[k]!);
-  });
-  for (const k of seen.unknown) ofPatches += axes[k]!;
-  requireLength("seen_begin", begin, unknowns + 1);
-  requireLength("seen_rays", seen.rays, unknowns);
-  requireLength("seen_axes", axes, unknowns);
-  requireLength("seen_item", seen.item, begin[unknowns]!);
-  requireLength("seen_hits", seen.hits, begin[unknowns]!);
-  requireLength("seen_axis_code", seen.code, ofItems);
-  requireLength("seen_axis_scale", seen.scale, ofUnknowns);
-  requireLength("patch_axis", seen.patchAxis, ofPatches);
-  requireBelow("seen_item", seen.item, patches + 1);
-}
-
 function check(data: PageData): void {
-  const { patches: n, unknowns: k } = data.header;
+  const { patches: n, nodes: k } = data.header;
   const triangles = data.trianglePatch.length;
   const vertices = data.shadingBegin.length - 1;
   requireLength("patch_triangle", data.patchTriangle, triangles * 3);
@@ -185,9 +151,10 @@ function check(data: PageData): void {
   for (const name of ["normal", "centroid", "emission", "reflectance", "irradiance"] as const) {
     requireLength(name, data[name], n * 3);
   }
-  for (const name of ["area", "surface", "side", "unknown"] as const) requireLength(name, data[name], n);
-  for (const name of ["unknownArea", "rowSum"] as const) requireLength(name, data[name], k);
-  for (const light of data.lightIrradiance) requireLength("light", light, k * 3);
+  for (const name of ["area", "surface", "side", "node"] as const) requireLength(name, data[name], n);
+  for (const name of ["nodeArea", "rowSum"] as const) requireLength(name, data[name], k);
+  for (const light of data.lightIrradiance) requireLength("light", light, n * 3);
+  for (const light of data.emittedIrradiance) if (light) requireLength("emitted", light, n * 3);
   if (data.rowError.length > 0) requireLength("row_error", data.rowError, k);
   requireLength("factor_begin", data.factorBegin, k + 1);
   requireLength("factor_code", data.factorCode, data.factorBegin[k]!);
@@ -197,7 +164,6 @@ function check(data: PageData): void {
   requireLength("shading_weight", data.shadingWeight, data.shadingPatch.length);
   if (data.eyePosition.length > 3 * vertices) requireLength("eye_position", data.eyePosition, 3 * vertices);
   for (const name of ["eyeNormal", "eyeAxis"] as const) requireLength(name, data[name], data.eyePosition.length);
-  if (data.seen) checkSeen(data.seen, n, k);
   requireLength("element_light", data.elementLight, data.elementPosition.length);
   requireBelow("patch_triangle", data.patchTriangle, data.position.length / 3);
   requireBelow("triangle_patch", data.trianglePatch, n);
@@ -205,26 +171,10 @@ function check(data: PageData): void {
   requireBelow("shading_patch", data.shadingPatch, n);
   requireBelow("edge", data.edge, data.position.length / 3);
   requireBelow("surface", data.surface, data.header.surfaces.length);
-  requireBelow("unknown", data.unknown, k);
+  requireBelow("node", data.node, k);
   requireBelow("factor_column", data.factorColumn, k);
   if (data.order) requireBelow("order", data.order, k);
   requireBelow("element_triangle", data.elementTriangle, data.elementPosition.length / 3);
-}
-
-function readSeen(buffer: ArrayBuffer, header: Header): SeenData {
-  return {
-    begin: view(buffer, header, "seen_begin", "u32"),
-    item: view(buffer, header, "seen_item", "u32"),
-    hits: view(buffer, header, "seen_hits", "u16"),
-    rays: view(buffer, header, "seen_rays", "u32"),
-    axes: view(buffer, header, "seen_axes", "u8"),
-    code: view(buffer, header, "seen_axis_code", "u16"),
-    scale: view(buffer, header, "seen_axis_scale", "f32"),
-    patchAxis: view(buffer, header, "patch_axis", "f32"),
-    unknown: view(buffer, header, "unknown", "u32"),
-    area: view(buffer, header, "area", "f32"),
-    seesOut: header.sees_out,
-  };
 }
 
 /** The arrays are views of `buffer`. Throws an Error with one clear line if the data are damaged. */
@@ -251,19 +201,19 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     area: f32("area"),
     surface: u32("surface"),
     side: view(buffer, header, "side", "u8"),
-    unknown: u32("unknown"),
+    node: u32("node"),
     emission: f32("emission"),
     reflectance: f32("reflectance"),
     irradiance: f32("irradiance"),
-    unknownArea: f32("unknown_area"),
+    nodeArea: f32("node_area"),
     rowSum: f32("row_sum"),
     lightIrradiance: header.lights.map((_, l) => f32(`light_${l}`)),
+    emittedIrradiance: header.materials.map((_, m) => (`emitted_${m}` in header.arrays ? f32(`emitted_${m}`) : null)),
     rowError: f32("row_error"),
     factorBegin: u32("factor_begin"),
     factorColumn: u32("factor_column"),
     factorCode: view(buffer, header, "factor_code", "u16"),
     order: "order" in header.arrays ? u32("order") : null,
-    seen: header.unknowns === header.patches ? null : readSeen(buffer, header),
     elementPosition: f32("element_position"),
     elementTriangle: u32("element_triangle"),
     elementLight: f32("element_light"),

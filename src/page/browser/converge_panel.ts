@@ -163,8 +163,8 @@ export class ConvergePanel {
     const facts = element("run-facts");
     facts.dataset["residual"] = frame ? String(frame.residual) : "";
     facts.dataset["change"] = frame ? String(frame.change) : "";
-    const within = this.viewer.shared
-      ? " Light within unknowns is an estimate: a patch's stored irradiance changes as its unknown's does." : "";
+    const within = this.viewer.clustered
+      ? " What is reflected to a patch changes as it does for its node." : "";
     if (!frame) {
       facts.textContent = `From B = E on, with the materials as they are now.${within}`;
       return;

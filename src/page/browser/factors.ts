@@ -1,4 +1,4 @@
-// Form factors between unknowns: 16-bit codes of one triangle of the matrix -> rows of both.
+// Form factors between nodes: 16-bit codes of one triangle of the matrix -> rows of both.
 
 /** Rows of F, columns increasing: F[i,j] is the fraction of what leaves i that reaches j. */
 export interface Factors {
@@ -20,7 +20,7 @@ export interface StoredFactors {
   step: number;
 }
 
-const LARGEST_SHORT = 1 << 16; // a page holds at most 8,000 unknowns: 16 bits do for columns
+const LARGEST_SHORT = 1 << 16; // a page holds at most 8,000 nodes: 16 bits do for columns
 
 /** What each code means. */
 export function codeTable(lowest: number, step: number): Float32Array {
@@ -67,7 +67,7 @@ function emptyRows(begins: Uint32Array, room: (bytes: number) => ArrayBuffer) {
 export function expand(
   stored: StoredFactors, room = (bytes: number): ArrayBuffer => new ArrayBuffer(bytes)): Factors {
   const size = stored.area.length;
-  if (size > LARGEST_SHORT) throw new Error(`${size} unknowns are more than a page holds`);
+  if (size > LARGEST_SHORT) throw new Error(`${size} nodes are more than a page holds`);
   const dense = stored.column.length === 0;
   const table = codeTable(stored.lowest, stored.step);
   const { begin, column, value } = emptyRows(beginsOfBoth(stored), room);

@@ -1,5 +1,5 @@
-// Light on patches: computes the light of each patch from the irradiance of unknowns, and its
-// emission and reflectance from a viewer's changes of materials.
+// Light on patches: computes the light of each patch from the irradiance of nodes, and its emission
+// and reflectance from a viewer's changes of materials.
 import type { PageData, Rgb } from "./container";
 import type { Materials } from "./protocol";
 
@@ -31,48 +31,70 @@ export function luminance(values: Float32Array): Float32Array {
   return result;
 }
 
-/** Means by area over the patches of each unknown. */
-export function unknownMeans(data: PageData, values: Float32Array): Float32Array {
-  const count = data.header.unknowns;
-  const sums = new Float64Array(count * BANDS);
-  const areas = new Float64Array(count);
+/** Whether each patch is a node, so that form factors are between patches. */
+export function nodesArePatches(data: PageData): boolean { return data.header.nodes === data.header.patches; }
+
+/** Means by area over the patches of each node. */
+export function nodeMeans(data: PageData, values: Float32Array): Float32Array {
+  if (nodesArePatches(data)) return values;
+  const sums = new Float64Array(data.header.nodes * BANDS);
   for (let i = 0; i < data.area.length; ++i) {
-    const k = data.unknown[i]!;
-    areas[k] = areas[k]! + data.area[i]!;
-    for (let b = 0; b < BANDS; ++b) {
-      sums[k * BANDS + b] = sums[k * BANDS + b]! + data.area[i]! * values[i * BANDS + b]!;
-    }
+    const to = data.node[i]! * BANDS;
+    for (let b = 0; b < BANDS; ++b) sums[to + b] = sums[to + b]! + data.area[i]! * values[i * BANDS + b]!;
   }
-  if (count === data.header.patches) return permuted(data, values); // no rounding, patches of area 0 too
   return Float32Array.from(sums, (sum, k) => {
-    const area = areas[Math.floor(k / BANDS)]!;
+    const area = data.nodeArea[Math.floor(k / BANDS)]!;
     return area > 0 ? sum / area : 0;
   });
 }
 
-function permuted(data: PageData, values: Float32Array): Float32Array {
-  const result = new Float32Array(values.length);
-  for (let i = 0; i < data.area.length; ++i) {
-    const to = data.unknown[i]! * BANDS;
-    for (let b = 0; b < BANDS; ++b) result[to + b] = values[i * BANDS + b]!;
-  }
-  return result;
+/** Adds values, times a factor for each band. */
+function addTimes(sum: Float32Array, values: Float32Array, factor: Rgb): void {
+  for (let k = 0; k < sum.length; ++k) sum[k] = sum[k]! + factor[k % BANDS]! * values[k]!;
+}
+
+/** How many times a lamp's emission is what it was; 1 where it was dark. */
+function timesBefore(before: Rgb, now: Rgb): Rgb {
+  return now.map((value, b) => (before[b]! > 0 ? value / before[b]! : 1)) as Rgb;
 }
 
 /**
- * Irradiance of patches from that of unknowns. Where patches share unknowns (`reference` is there: the
- * unknowns' irradiance in the stored light, by the page's own solution) each patch's stored irradiance
- * changes as its unknown's does: an estimate, until light within unknowns is found anew (relight_shared.ts).
+ * The irradiance of patches, N*3, by each lamp whose light is known patch by patch: lights without a surface, with
+ * a factor each, and, where patches are summed to nodes, what emits.
+ */
+export function directIrradiance(data: PageData, states: MaterialState[], lights: Rgb[]): Float32Array {
+  const sum = new Float32Array(data.area.length * BANDS);
+  data.lightIrradiance.forEach((irradiance, l) => addTimes(sum, irradiance, lights[l]!));
+  data.emittedIrradiance.forEach((irradiance, m) => {
+    const before = data.header.materials[m]!.emission;
+    if (irradiance) addTimes(sum, irradiance, timesBefore(before, states[m]!.emission));
+  });
+  return sum;
+}
+
+/** Light of which the mean over nodes and the rest, which follows it, are known: as the page has it. */
+export interface StoredLight {
+  direct: Float32Array; // N*3
+  reflected: Float32Array; // K*3: the page's own solution, less nodeMeans(direct)
+}
+
+/**
+ * Irradiance of patches from that of nodes. Where these are clusters of patches, `direct` is known patch by patch, and
+ * what is reflected to a patch changes from the stored light as it does for its node.
  */
 export function patchIrradiance(
-  data: PageData, unknowns: Float32Array, reference: Float32Array | null): Float32Array {
+  data: PageData, nodes: Float32Array, direct: Float32Array, stored: StoredLight | null): Float32Array {
+  if (!stored) return nodes;
+  const means = nodeMeans(data, direct);
   const result = new Float32Array(data.area.length * BANDS);
-  for (let i = 0; i < data.area.length; ++i) {
-    const from = data.unknown[i]! * BANDS;
-    for (let b = 0; b < BANDS; ++b) {
-      const now = unknowns[from + b]!;
-      const then = reference ? reference[from + b]! : 0;
-      result[i * BANDS + b] = then > 0 ? (data.irradiance[i * BANDS + b]! * now) / then : now;
+  for (let k = 0; k < result.length; ++k) {
+    const from = data.node[Math.floor(k / BANDS)]! * BANDS + (k % BANDS);
+    const now = nodes[from]!, lit = means[from]!, then = stored.reflected[from]!;
+    if (now < lit) {
+      result[k] = (direct[k]! * now) / lit; // a run that is watched, before all lamps are there
+    } else {
+      const before = Math.max(0, data.irradiance[k]! - stored.direct[k]!);
+      result[k] = direct[k]! + (then > 0 ? (before * (now - lit)) / then : now - lit);
     }
   }
   return result;
@@ -143,13 +165,20 @@ export function background(lights: { radiance: Rgb }[], factors: Rgb[]): Rgb {
   return [0, 1, 2].map((b) => lights.reduce((sum, { radiance }, l) => sum + radiance[b]! * factors[l]![b]!, 0)) as Rgb;
 }
 
-export function materialsOfUnknowns(data: PageData, light: Omit<PatchLight, "irradiance">, lights: Rgb[]): Materials {
-  const { emission, reflectance } = light;
+/** What the solver needs: emission that is not in `direct`, which is known patch by patch. */
+export function materialsOfNodes(
+  data: PageData, light: Omit<PatchLight, "irradiance">, direct: Float32Array): Materials {
+  const { surfaces } = data.header;
+  const emission = light.emission.slice();
+  for (let i = 0; i < data.area.length; ++i) {
+    const m = surfaces[data.surface[i]!]!.material;
+    if (!data.emittedIrradiance[m]) continue;
+    for (let b = 0; b < BANDS; ++b) if (data.header.materials[m]!.emission[b]! > 0) emission[i * BANDS + b] = 0;
+  }
   return {
-    emission: unknownMeans(data, emission),
-    reflectance: unknownMeans(data, reflectance),
-    lights,
-    ...(data.seen && { patches: { emission, reflectance } }),
+    emission: nodeMeans(data, emission),
+    reflectance: nodeMeans(data, light.reflectance),
+    direct: nodeMeans(data, direct),
   };
 }
 

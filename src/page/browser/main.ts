@@ -38,7 +38,7 @@ function sayAbout(viewer: Viewer): void {
   const rows: [string, string][] = [
     ["Written by", header.program],
     ["Patches", counted(header.patches)],
-    ["Unknowns", counted(header.unknowns)],
+    ["Form factors between", viewer.clustered ? `${counted(header.nodes)} nodes of patches` : "patches"],
     ["Form factors by", header.method + (header.tolerance === null ? "" : `, tolerance ${short(header.tolerance)}`)],
     ["Scene", header.closed ? "closed" : "open"],
     ["Solved by", `${solver.name}, ${solver.iterations} iterations`],
@@ -46,13 +46,12 @@ function sayAbout(viewer: Viewer): void {
     ["16-bit form factors: error of each, at most", percent(q.largest_relative_error)],
     ["…of a row, at most", short(q.largest_row_error)],
   ];
-  const { shared } = viewer;
-  if (!shared) rows.push(["Stored light against these form factors", percent(viewer.agreement)]);
+  if (!viewer.clustered) rows.push(["Stored light against these form factors", percent(viewer.agreement)]);
   element("about").replaceChildren(...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
-  if (shared) {
+  if (viewer.clustered) {
     element("about").after(make("p", { class: "note" },
-      "Patches share unknowns. Relighting solves between them and finds light within them, as the program does; " +
-      "in a run that is watched each patch's stored irradiance changes as its unknown's does."));
+      "Form factors are summed over nodes of patches that are near each other and face alike. Direct light is known " +
+      "patch by patch; what is reflected to a patch changes as it does for its node."));
   }
 }
 
@@ -61,7 +60,7 @@ function sayTitle({ header }: PageData): void {
   element("title").textContent = header.title;
   element("loading-title").textContent = header.title;
   element("subtitle").textContent = `${counted(header.patches)} patches, ` +
-    (header.unknowns === header.patches ? "" : `${counted(header.unknowns)} unknowns, `) +
+    (header.nodes === header.patches ? "" : `${counted(header.nodes)} nodes, `) +
     `${METHODS[header.method] ?? header.method} form factors`;
 }
 

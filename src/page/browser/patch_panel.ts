@@ -26,16 +26,16 @@ function bandTable(viewer: Viewer, patch: number): HTMLElement {
 function facts(viewer: Viewer, name: MarkName, { patch }: Picked): HTMLElement {
   const { data } = viewer;
   const surface = data.header.surfaces[data.surface[patch]!]!;
-  const unknown = data.unknown[patch]!;
+  const node = data.node[patch]!;
   const rows: [string, Node | string][] = [
     ["Surface", surface.name],
     ["Material", data.header.materials[surface.material]?.name ?? "none"],
     ["Side", data.side[patch] === 1 ? "back" : "front"],
     ["Area, m²", number(data.area[patch]!)],
-    ["Row sum", number(data.rowSum[unknown]!)],
+    ["Row sum", number(data.rowSum[node]!)],
   ];
-  if (data.rowError.length > 0) rows.push(["Error figure of the row", number(data.rowError[unknown]!)]);
-  if (data.header.unknowns !== data.header.patches) rows.push(["Shares unknown", number(unknown)]);
+  if (data.rowError.length > 0) rows.push(["Error figure of the row", number(data.rowError[node]!)]);
+  if (viewer.clustered) rows.push(["Node of patches", number(node)]);
   return make("section", { "data-pick": name }, make("h3", { class: name }, `Patch ${patch}`), list(rows),
     bandTable(viewer, patch));
 }
@@ -43,13 +43,13 @@ function facts(viewer: Viewer, name: MarkName, { patch }: Picked): HTMLElement {
 function pair(viewer: Viewer): HTMLElement | string {
   const { first, second } = viewer.picks;
   if (!first?.row || !second?.row) return "";
-  const { unknown, unknownArea } = viewer.data;
-  const i = unknown[first.patch]!, j = unknown[second.patch]!;
-  const [one, other] = viewer.shared ? [`unknown ${i}`, `unknown ${j}`] : [first.patch, second.patch];
-  const areas: [string, Node][] = viewer.shared
-    ? [[`Area of ${one}, m²`, number(unknownArea[i]!)], [`Area of ${other}, m²`, number(unknownArea[j]!)]] : [];
+  const { node, nodeArea } = viewer.data;
+  const i = node[first.patch]!, j = node[second.patch]!;
+  const [one, other] = viewer.clustered ? [`node ${i}`, `node ${j}`] : [first.patch, second.patch];
+  const areas: [string, Node][] = viewer.clustered
+    ? [[`Area of ${one}, m²`, number(nodeArea[i]!)], [`Area of ${other}, m²`, number(nodeArea[j]!)]] : [];
   const there = first.row[j]!, back = second.row[i]!;
-  const power = unknownArea[i]! * there, powerBack = unknownArea[j]! * back;
+  const power = nodeArea[i]! * there, powerBack = nodeArea[j]! * back;
   const apart = power > 0 ? Math.abs(power - powerBack) / power : 0;
   return make("section", { "data-pick": "pair" }, make("h3", {}, "What they exchange"), list([
     [`F from ${one} to ${other}`, number(there)],
@@ -58,7 +58,7 @@ function pair(viewer: Viewer): HTMLElement | string {
     ["A F there, m²", number(power)],
     ["A F back, m²", number(powerBack)],
     ["Reciprocity, difference", number(apart)],
-  ]), make("p", { class: "note" }, (viewer.shared ? "Patches share unknowns, which these form factors are of. " : "") +
+  ]), make("p", { class: "note" }, (viewer.clustered ? "Form factors are between nodes of patches that are near each other. " : "") +
     "One of each pair is stored; the other follows from A₁F₁₂ = A₂F₂₁."));
 }
 

@@ -1,35 +1,26 @@
-// The messages between the page and its solver worker. Values of unknowns: K * 3, row-major.
-import type { Rgb, SeenData } from "./container";
+// The messages between the page and its solver worker. Values of nodes: K * 3, row-major.
 import type { StoredFactors } from "./factors";
 import type { Method } from "./methods";
 
-/** N * 3, row-major. */
-export interface PatchMaterials {
-  emission: Float32Array; // W/m^2
-  reflectance: Float32Array;
-}
-
-/** The materials of unknowns, with the viewer's changes. */
+/** The materials of nodes, with the viewer's changes. */
 export interface Materials {
   emission: Float32Array; // W/m^2
   reflectance: Float32Array;
-  lights: Rgb[]; // factors on each light without a surface
-  patches?: PatchMaterials; // if they share unknowns
+  direct: Float32Array; // irradiance from outside the form factors, W/m^2
 }
 
 /** The data that the worker gets once. */
 export interface Load {
   stored: StoredFactors;
-  order: Uint32Array | null; // of Gauss-Seidel's sweeps over unknowns; null: as numbered
+  order: Uint32Array | null; // of Gauss-Seidel's sweeps over nodes; null: as numbered
   materials: Materials;
   irradiance: Float32Array; // as stored
-  lights: { irradiance: Float32Array; radiance: Rgb }[]; // as stored: K * 3; from where nothing stands
-  seen: SeenData | null; // if patches share unknowns
+  arePatches: boolean; // else clusters of patches
 }
 
 export type Request =
   | ({ kind: "load" } & Load)
-  | { kind: "rows"; ticket: number; unknowns: number[] }
+  | { kind: "rows"; ticket: number; nodes: number[] }
   | { kind: "warm" }
   | { kind: "relight"; ticket: number; materials: Materials | null; milliseconds: number } // null: go on
   | { kind: "start"; run: number; method: Method; materials: Materials }
@@ -49,7 +40,7 @@ export interface Frame {
 export type Reply =
   | { kind: "loaded"; entries: number; agreement: number; reference: Float32Array | null }
   | { kind: "rows"; ticket: number; rows: Float32Array[] }
-  | { kind: "relit"; ticket: number; irradiance: Float32Array; ofPatches: Float32Array | null; products: number;
-      residual: number; converged: boolean; milliseconds: number }
+  | { kind: "relit"; ticket: number; irradiance: Float32Array; products: number; residual: number;
+      converged: boolean; milliseconds: number }
   | ({ kind: "frame" } & Frame)
   | { kind: "failed"; message: string };

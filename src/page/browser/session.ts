@@ -1,19 +1,16 @@
 // The state of the solver worker between messages: the matrix, the last light, and a run that is
 // watched. It does not depend on workers, so that tests can call it directly.
 import { type Factors, denseRow, expand } from "./factors";
-import { background } from "./light";
 import type { Method } from "./methods";
 import type { Frame, Load, Materials, Reply } from "./protocol";
 import { type Lit, Relight } from "./relight";
-import { SharedRelight } from "./relight_shared";
 import * as solver from "./solver";
 import type { Iterate, System } from "./solver";
 import { VectorProduct } from "./vector_product";
-import { LightWithin } from "./within";
 
 /** Relighting is done when the residual is within this share of the mean irradiance. */
 export const RELIGHT_TOLERANCE = 5e-5;
-/** The most time for the reference light of clusters. */
+/** The most time for the reference light of nodes. */
 const REFERENCE_MS = 5000;
 /** The approximate limit of warm-up work. */
 const WARM_MS = 150;
@@ -33,19 +30,17 @@ export class Session {
   private readonly vectors: VectorProduct | null;
   private readonly factors: Factors;
   private lit: Lit;
-  private readonly within: LightWithin | null;
-  private relighting: Relight | SharedRelight | null = null;
+  private relighting: Relight | null = null;
   private run: Run | null = null;
   readonly loaded: Reply & { kind: "loaded" };
 
   /**
-   * If patches share unknowns, the stored light is not the solution of the matrix alone, so a reference is
+   * Where nodes are clusters of patches, the stored light is not the solution of their matrix, so a reference is
    * solved for. `kernel`: of VectorProduct; without it, products are plain sums.
    */
   constructor(private readonly load: Load, kernel: Uint8Array<ArrayBuffer> | null) {
     this.vectors = kernel && WebAssembly.validate(kernel) ? new VectorProduct(load.stored, kernel) : null;
     this.factors = this.vectors?.factors ?? expand(load.stored);
-    this.within = load.seen && new LightWithin(load.seen);
     const stored = Float64Array.from(load.irradiance);
     const system = this.system(load.materials);
     const radiosity = stored.map((h, k) => system.emission[k]! + system.reflectance[k]! * h);
@@ -55,12 +50,12 @@ export class Session {
       kind: "loaded",
       entries: this.factors.value.length,
       agreement: relativeDifference(gathered, stored, this.factors.area),
-      reference: load.seen && this.referenceLight(),
+      reference: load.arePatches ? null : this.referenceLight(),
     };
   }
 
-  rows(unknowns: number[]): Float32Array[] {
-    return unknowns.map((i) => denseRow(this.factors, i));
+  rows(nodes: number[]): Float32Array[] {
+    return nodes.map((i) => denseRow(this.factors, i));
   }
 
   /** Solves for the light of `materials` from the last light for about this time; null: continues. */
@@ -71,14 +66,12 @@ export class Session {
     const before = materials ? 0 : relight.products;
     relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > milliseconds);
     if (Number.isFinite(relight.residual)) this.lit = relight.lit();
-    const ofPatches = relight instanceof SharedRelight ? relight.ofPatches() : null;
     return {
       kind: "relit",
       irradiance: Float32Array.from(relight.irradiance()),
-      ofPatches: ofPatches && Float32Array.from(ofPatches),
       products: relight.products - before,
       residual: relight.residual,
-      converged: relight.residual <= RELIGHT_TOLERANCE && (ofPatches !== null || !this.within),
+      converged: relight.residual <= RELIGHT_TOLERANCE,
       milliseconds: performance.now() - began,
     };
   }
@@ -91,19 +84,14 @@ export class Session {
     relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > WARM_MS);
   }
 
-  private relightFor(materials: Materials): Relight | SharedRelight {
-    const system = this.system(materials);
-    const multiply = (x: Float64Array) => this.multiply(x);
-    const { seen } = this.load;
-    if (!this.within || !materials.patches || !seen) return new Relight(system, this.lit, multiply);
-    const sky = background(this.load.lights, materials.lights);
-    return new SharedRelight(system, this.lit, multiply, this.within, materials.patches, sky, seen.seesOut);
+  private relightFor(materials: Materials): Relight {
+    return new Relight(this.system(materials), this.lit, (x) => this.multiply(x));
   }
 
-  /** The matrix' own light of unknowns, with materials as stored. */
+  /** The matrix' own light of nodes, with materials as stored. */
   private referenceLight(): Float32Array {
     const began = performance.now();
-    const relight = new Relight(this.system(this.load.materials), this.lit, (x) => this.multiply(x));
+    const relight = this.relightFor(this.load.materials);
     relight.run(RELIGHT_TOLERANCE, () => performance.now() - began > REFERENCE_MS);
     this.lit = relight.lit();
     return Float32Array.from(relight.irradiance());
@@ -170,11 +158,8 @@ export class Session {
   }
 
   private system(materials: Materials): System {
-    const more = new Float32Array(materials.emission.length);
-    this.load.lights.forEach(({ irradiance }, l) => irradiance.forEach((h, k) => {
-      more[k] = more[k]! + h * materials.lights[l]![k % solver.BANDS]!;
-    }));
-    return { factors: this.factors, emission: materials.emission, reflectance: materials.reflectance, more };
+    const { emission, reflectance, direct } = materials;
+    return { factors: this.factors, emission, reflectance, more: direct };
   }
 }
 

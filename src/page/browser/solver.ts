@@ -127,7 +127,7 @@ export function gaussSeidelSweep(
 }
 
 /**
- * Southwell's relaxation, "progressive refinement" (Cohen, Chen, Wallace & Greenberg 1988): the unknown
+ * Southwell's relaxation, "progressive refinement" (Cohen, Chen, Wallace & Greenberg 1988): the node
  * with the most unsent power sends it, one row of F at a time. `iterate.radiosity` is all light so far,
  * E + rho H; `sent` is the part of it that was sent.
  */

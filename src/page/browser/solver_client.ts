@@ -12,8 +12,7 @@ type Loaded = Reply & { kind: "loaded" };
 type Relit = Reply & { kind: "relit" };
 
 export interface Relighting {
-  irradiance: Float32Array; // of unknowns, K * 3
-  ofPatches: Float32Array | null; // N * 3, if patches share unknowns and all is solved
+  irradiance: Float32Array; // of nodes, K * 3
   products: number; // with the matrix, since the change
   milliseconds: number; // since the change, solver alone
   residual: number; // over the mean irradiance
@@ -51,11 +50,11 @@ export class SolverClient {
   }
 
   /** Rows of F, zeros included. */
-  rows(unknowns: number[]): Promise<Float32Array[]> {
+  rows(nodes: number[]): Promise<Float32Array[]> {
     const ticket = ++this.tickets;
     return new Promise((resolve) => {
       this.rowTickets.set(ticket, resolve);
-      this.send({ kind: "rows", ticket, unknowns });
+      this.send({ kind: "rows", ticket, nodes });
     });
   }
 
@@ -95,11 +94,11 @@ export class SolverClient {
   private takeRelit(reply: Relit): void {
     this.products += reply.products;
     this.milliseconds += reply.milliseconds;
-    const { irradiance, ofPatches, residual, converged } = reply;
+    const { irradiance, residual, converged } = reply;
     const hopeless = !Number.isFinite(residual) || this.milliseconds > RELIGHT_LIMIT_MS;
     if ((converged || hopeless) && !this.wanted) this.relighting = false;
     const finished = !this.relighting;
-    this.onRelit({ irradiance, ofPatches, residual, converged, finished, products: this.products,
+    this.onRelit({ irradiance, residual, converged, finished, products: this.products,
                    milliseconds: this.milliseconds });
     if (!finished) this.nextRelight();
   }

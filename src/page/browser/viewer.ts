@@ -7,7 +7,8 @@ import { redBlue, viridis, type ColourMap } from "./colour";
 import type { PageData, Rgb } from "./container";
 import { automaticRange, extremes, NO_VALUE, type Range, type Scale } from "./false_colour";
 import {
-  background, luminance, materialsOfUnknowns, patchIrradiance, radiosityOf, withMaterials, unknownMeans,
+  background, directIrradiance, luminance, materialsOfNodes, nodeMeans, nodesArePatches, patchIrradiance, radiosityOf,
+  withMaterials, type StoredLight,
   type MaterialState, type PatchLight,
 } from "./light";
 import type { Method } from "./methods";
@@ -23,7 +24,7 @@ export type Source = "stored" | "relit" | "run" | "gathered";
 
 export interface Picked {
   patch: number;
-  row: Float32Array | null; // of its unknown; null: not here yet
+  row: Float32Array | null; // of its node; null: not here yet
 }
 
 export class Viewer {
@@ -47,7 +48,8 @@ export class Viewer {
 
   private readonly maps = { rising: this.uniforms.map.value, diverging: mapTexture(redBlue) };
   private readonly tree: TriangleTree;
-  private reference: Float32Array | null = null;
+  private reference: StoredLight | null = null; // where nodes are clusters of patches
+  private direct: Float32Array; // N*3, with the present lamps
   solved: PatchLight; // by the matrix, for the present materials
   private materials: Materials;
   private runs = 0;
@@ -60,7 +62,8 @@ export class Viewer {
     this.light = this.solved = this.stored;
     this.states = this.storedStates();
     this.lights = this.storedLights();
-    this.materials = materialsOfUnknowns(data, this.stored, this.lights);
+    this.direct = directIrradiance(data, this.states, this.lights);
+    this.materials = materialsOfNodes(data, this.stored, this.direct);
     this.meshes = new SceneMeshes(data, this.uniforms);
     this.control = new CameraControl(canvas, data.header);
     this.stage = new Stage(canvas, this.meshes, this.control, this.uniforms);
@@ -70,8 +73,8 @@ export class Viewer {
     this.refreshLight();
   }
 
-  /** Whether patches share unknowns. */
-  get shared(): boolean { return this.data.seen !== null; }
+  /** Whether form factors are between clusters of patches. */
+  get clustered(): boolean { return !nodesArePatches(this.data); }
 
   /** `event`: "light", "view" (how it is shown), "picks", "rows" (of picks, which come later). */
   listen(event: string, act: () => void): void {
@@ -94,16 +97,15 @@ export class Viewer {
     const { data } = this;
     const { lowest, step } = data.header.quantisation;
     const loaded = await this.solver.load({
-      stored: { area: data.unknownArea, begin: data.factorBegin, column: data.factorColumn,
+      stored: { area: data.nodeArea, begin: data.factorBegin, column: data.factorColumn,
                 code: data.factorCode, lowest, step },
       order: data.order,
       materials: this.materials,
-      irradiance: unknownMeans(data, data.irradiance),
-      lights: data.header.lights.map(({ radiance }, l) => ({ irradiance: data.lightIrradiance[l]!, radiance })),
-      seen: data.seen,
+      irradiance: nodeMeans(data, data.irradiance),
+      arePatches: !this.clustered,
     });
     this.agreement = loaded.agreement;
-    this.reference = loaded.reference;
+    if (loaded.reference) this.reference = this.storedLight(loaded.reference);
     whenIdle(() => this.solver.warm());
     this.solver.onRelit = (light) => {
       this.takeSolution(light);
@@ -117,14 +119,14 @@ export class Viewer {
   /** Solves again with `states` and `lights`. */
   relight(): void {
     this.solved = { ...withMaterials(this.data, this.states), irradiance: this.solved.irradiance };
-    this.materials = materialsOfUnknowns(this.data, this.solved, this.lights);
+    this.setMaterials();
     this.solver.relight(this.materials);
     this.showSolved();
   }
 
   toStored(): void {
     this.solved = this.stored;
-    this.materials = materialsOfUnknowns(this.data, this.stored, this.lights);
+    this.setMaterials();
     this.showSolved();
   }
 
@@ -143,7 +145,7 @@ export class Viewer {
 
   showFrame(frame: Frame): void {
     this.source = "run";
-    this.light = { ...this.solved, irradiance: patchIrradiance(this.data, frame.irradiance, this.reference) };
+    this.light = { ...this.solved, irradiance: this.ofPatches(frame.irradiance) };
     this.refreshLight();
   }
 
@@ -165,7 +167,7 @@ export class Viewer {
     this.refreshValues();
     this.tell("picks");
     if (!picked) return;
-    const [row] = await this.solver.rows([this.data.unknown[picked.patch]!]);
+    const [row] = await this.solver.rows([this.data.node[picked.patch]!]);
     picked.row = row!;
     if (this.picks[name] !== picked) return;
     this.refreshValues();
@@ -231,15 +233,15 @@ export class Viewer {
   /** One value for each patch. */
   values(show: Show, light: PatchLight): Float32Array {
     const { data } = this;
-    const ofUnknown = (values: Float32Array | null) => Float32Array.from(data.unknown, (k) =>
+    const ofNode = (values: Float32Array | null) => Float32Array.from(data.node, (k) =>
       values && values.length > 0 ? values[k]! : NO_VALUE);
     switch (show) {
       case "light":
       case "radiosity": return luminance(radiosityOf(light));
       case "irradiance": return luminance(light.irradiance);
-      case "row-sum": return ofUnknown(data.rowSum);
-      case "row-error": return ofUnknown(data.rowError);
-      case "factors": return ofUnknown(this.picks.first?.row ?? null);
+      case "row-sum": return ofNode(data.rowSum);
+      case "row-error": return ofNode(data.rowError);
+      case "factors": return ofNode(this.picks.first?.row ?? null);
       case "difference": {
         const solved = luminance(radiosityOf(this.solved));
         return luminance(radiosityOf(light)).map((value, i) => value - solved[i]!);
@@ -248,12 +250,27 @@ export class Viewer {
   }
 
   /** Takes the solution, or the way to it, of the latest change; after a return to stored light it is of no use. */
-  private takeSolution({ irradiance, ofPatches }: Relighting): void {
+  private takeSolution({ irradiance }: Relighting): void {
     if (this.solved === this.stored) return;
     const isShown = this.light === this.solved;
-    this.solved = { ...this.solved, irradiance: ofPatches ?? patchIrradiance(this.data, irradiance, this.reference) };
+    this.solved = { ...this.solved, irradiance: this.ofPatches(irradiance) };
     if (isShown) this.light = this.solved;
     this.refreshLight();
+  }
+
+  private setMaterials(): void {
+    this.direct = directIrradiance(this.data, this.states, this.lights);
+    this.materials = materialsOfNodes(this.data, this.solved, this.direct);
+  }
+
+  /** `nodes`: of these, with the stored materials, by the page's own solution. */
+  private storedLight(nodes: Float32Array): StoredLight {
+    const means = nodeMeans(this.data, this.direct);
+    return { direct: this.direct, reflected: nodes.map((h, k) => Math.max(0, h - means[k]!)) };
+  }
+
+  private ofPatches(nodes: Float32Array): Float32Array {
+    return patchIrradiance(this.data, nodes, this.direct, this.reference);
   }
 
   private refreshLight(): void {

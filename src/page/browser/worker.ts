@@ -19,7 +19,7 @@ function answer(request: Request): Reply | null {
   if (!session) throw new Error("The solver was asked before it had the form factors");
   switch (request.kind) {
     case "rows":
-      return { kind: "rows", ticket: request.ticket, rows: session.rows(request.unknowns) };
+      return { kind: "rows", ticket: request.ticket, rows: session.rows(request.nodes) };
     case "warm":
       session.warm();
       return null;

@@ -69,23 +69,19 @@ FormFactorPlan Pipeline::planFactors() const {
   returnFreedMemory();
   if (options.memory_held == 0) options.memory_held = residentBytes() + kLoadedLater;
   const PatchMesh& patches = made(results_.mesh).mesh;
-  options.exact_rows = emittingUnknowns(
+  options.exact_rows = emittingPatches(
       patches, results_.materials ? *results_.materials : patchMaterials(scene(), patches));
-  std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
-  const bool only_rays =
-      processes_ != nullptr && patches.clusters && options.method == FormFactorMethod::automatic;
-  if (only_rays) kept = FormFactorMethod::rays;
+  const std::optional<FormFactorMethod> kept = methodOfKeptRows(factorsKey(options, patches));
   if (kept) options.method = *kept;
   FormFactorPlan plan = planFormFactors(patches, options, progress_);
   if (kept) plan.reason = "rows of an earlier run are there";
-  if (only_rays) plan.reason = "processes share them where patches share unknowns";
   // Planning may have tried the exact method, which takes more memory than hemicubes do afterwards.
   plan.bytes = std::max(plan.bytes, peakBytes());
   return plan;
 }
 
 FormFactors Pipeline::computeFactors(std::optional<FormFactorPlan> plan, const StageKey& key) {
-  if (processes_ != nullptr) requireShareable(made(results_.mesh).mesh, options_.factors);
+  if (processes_ != nullptr) requireShareable(options_.factors);
   return computedStage("form factors", [&] {
     if (!plan) plan = planFactors();
     observer_.planned(*this, *plan);

@@ -63,8 +63,7 @@ class Table(Fixed):
 class FormFactors(Fixed):
     """F of shape (rows, rows): F[i, j] is the fraction of what leaves i that reaches j.
 
-    Rows are patches of the mesh, or the clusters that share rows (Mesh.cluster); of from_csr() those
-    of the matrix. Made by form_factors(), from_csr() and read().
+    Rows are patches of the mesh; of from_csr() those of the matrix. Made by form_factors(), from_csr() and read().
 
     >>> F = rad.form_factors(rad.mesh(rad.load("data/furnace-cube.obj"), patches=24))
     >>> F

@@ -151,13 +151,6 @@ def materials_of(mesh: Optional[Mesh], rows: int, meaning: str, reflectance: Any
     return Materials(np.ascontiguousarray(rho), E.reshape(rows, bands * lamps), shine, E.shape)
 
 
-def _meaning_of_rows(F: FormFactors) -> str:
-    if F.mesh is None or len(F.mesh) == len(F):
-        return f"N = {len(F)}"
-    return (f"N = {len(F.mesh)} patches, which share the {len(F)} rows of the form factors; values of "
-            "rows become those of patches by values[mesh.cluster]")
-
-
 @takes_options("solve")
 def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky: Any = None,
           solver: str = "auto", tolerance: float = 1e-6, max_iterations: int = 10000,
@@ -185,7 +178,7 @@ def solve(F: FormFactors, reflectance: Any = None, emission: Any = None, *, sky:
     materials = shape = None
     if F.mesh is None or reflectance is not None or emission is not None or sky is not None:
         rows = len(F) if F.mesh is None else len(F.mesh)
-        given = materials_of(F.mesh, rows, _meaning_of_rows(F), reflectance, emission, sky)
+        given = materials_of(F.mesh, rows, f"N = {len(F)}", reflectance, emission, sky)
         materials, shape = (given.reflectance, given.emission, given.sky), given.shape
     else:
         F.mesh._require_scene()

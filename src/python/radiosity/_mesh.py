@@ -104,17 +104,6 @@ class Mesh(Fixed):
         return self._handle.side
 
     @property
-    def cluster(self) -> Optional[np.ndarray]:
-        """(N,) uint32: the row of the form factors of each patch, where patches share rows; a view.
-        None: every patch has a row of its own."""
-        return self._handle.cluster
-
-    @property
-    def unknowns(self) -> int:
-        """Rows of the form factors: clusters where patches share them, else patches."""
-        return self._handle.unknowns
-
-    @property
     def reflectance(self) -> np.ndarray:
         """(N, 3) float64, 0 to 1: the scene's, textures averaged over the patch; a view."""
         self._require_scene()
@@ -137,7 +126,7 @@ class Mesh(Fixed):
         """What meshing did, a dict: surfaces (a dict each: name, and areas given, kept, buried,
         overlapped, degenerate, m^2); counts of repairs (welded_vertices, degenerate_faces,
         duplicate_faces, nonplanar_faces, hidden_sides, cuts, split_edges) and of what is left
-        (t_junctions, crossings, nonmanifold_edges); polygons, triangles, quads, clusters;
+        (t_junctions, crossings, nonmanifold_edges); polygons, triangles, quads;
         largest_deviation, longest_edge (m), smallest_angle, widest_cone (degrees);
         smallest_angle_surface; notes: a dict of severity and text each."""
         return self._handle.report
@@ -206,8 +195,7 @@ class Mesh(Fixed):
             raise InputError("the mesh is of a results file without a scene; give materials as arrays")
 
     def __repr__(self) -> str:
-        rows = "" if self.cluster is None else f" that share {self.unknowns:,} rows"
-        return f"<Mesh of {len(self):,} patches{rows} on {len(self.surface_names)} surfaces>"
+        return f"<Mesh of {len(self):,} patches on {len(self.surface_names)} surfaces>"
 
 
 @takes_options("mesh")

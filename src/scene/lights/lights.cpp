@@ -202,6 +202,8 @@ void addLight(std::vector<Light>& lights, Light light) {
   const std::string word = light.traits().word;
   if (!light.traits().single && light.name == word) {
     light.name = nextName(word, [&](const std::string& name) { return isCalled(lights, name); });
+  } else if (!light.traits().single && isCalled(lights, light.name)) {
+    throw InputError(fmt::format("light: two are called {}; give one another name", light.name));
   }
   setLight(lights, std::move(light));
 }

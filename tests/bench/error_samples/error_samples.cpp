@@ -16,14 +16,11 @@
 namespace radiosity::bench {
 namespace {
 
-/// Without clusters: samples are rows and elements of patches.
 PatchMesh meshOf(const std::string& file, const std::string& patches) {
   Progress silent;
   MeshOptions options;
   options.patches = std::stoul(patches);
-  PatchMesh mesh = meshScene(loadScene(file), options, silent).mesh;
-  mesh.clusters.reset();
-  return mesh;
+  return meshScene(loadScene(file), options, silent).mesh;
 }
 
 bool run(const std::vector<std::string>& words) {

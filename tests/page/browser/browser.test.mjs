@@ -199,9 +199,9 @@ test("sliders give the light of radiosity solve --set", async (t) => {
   await press("Escape");
 });
 
-// 200 unknowns of 3,511 patches.
-test("where patches share unknowns sliders give the light of radiosity solve --set", async () => {
-  const { page: shared, said: words } = await open(browser, "shared.html");
+// 2,000 nodes of 3,748 patches: what is reflected is known by nodes, direct light patch by patch.
+test("where patches are summed to nodes sliders give the light of radiosity solve --set", async () => {
+  const { page: shared, said: words } = await open(browser, "nodes.html");
   await shared.evaluate(() => {
     for (const id of ["relight-panel", "patch-panel"]) document.getElementById(id).open = true;
   });
@@ -210,25 +210,25 @@ test("where patches share unknowns sliders give the light of radiosity solve --s
   const both = async () => {
     await shared.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
     const options = (await shared.locator("#command").textContent()).split(" ").slice(3);
-    const [file, relit] = ["shared.h5", "shared-relit.h5"].map((name) => join(folder, "pages", name));
+    const [file, relit] = ["nodes.h5", "nodes-relit.h5"].map((name) => join(folder, "pages", name));
     execFileSync(program, ["solve", file, ...options, "-o", relit, "--quiet"]);
-    const truth = results("shared-relit.h5");
+    const truth = results("nodes-relit.h5");
     return [await irradiance(shared, patches), patches.flatMap((patch) => ofPatch(truth.irradiance, patch))];
   };
 
-  const unknowns = [...(await pageData("shared.html")).unknown];
+  const nodes = [...(await pageData("nodes.html")).node];
   await irradiance(shared, [2000]);
   await shared.locator("#pick-second").fill("1000");
   await shared.locator("#pick-second").press("Enter");
   const pair = shared.locator('[data-pick="pair"]');
   await pair.waitFor();
-  const [i, j] = [2000, 1000].map((patch) => `unknown ${unknowns[patch]}`);
+  const [i, j] = [2000, 1000].map((patch) => `node ${nodes[patch]}`);
   assert.deepEqual((await pair.locator("dt").allTextContents()).slice(0, 4),
     [`F from ${i} to ${j}`, `F from ${j} to ${i}`, `Area of ${i}, m²`, `Area of ${j}, m²`]);
   const [there, back, area, other, power, powerBack] =
     await pair.locator("data").evaluateAll((cells) => cells.map((c) => Number(c.value)));
   assert.ok(Math.abs(there * area - power) <= 1e-9 * power && Math.abs(back * other - powerBack) <= 1e-9 * power);
-  assert.match(await shared.locator("#run-facts").textContent(), /within unknowns is an estimate/);
+  assert.match(await shared.locator("#run-facts").textContent(), /as it does for its node/);
 
   for (const [name, what, value] of [
     ["lamp", "strength", 40],

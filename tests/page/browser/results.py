@@ -37,8 +37,7 @@ def main():
                for name in ("emission", "reflectance", "irradiance", "radiosity")}
         factors = file["form_factors"]
         out["area"] = factors["area"][()].tolist()
-        if "surface" in factors:  # not where patches share unknowns
-            out["surface"] = [factors["surface_names"][()][k].decode() for k in factors["surface"][()]]
+        out["surface"] = [factors["surface_names"][()][k].decode() for k in factors["surface"][()]]
         out["rowSum"] = factors["row_sum"][()].tolist()
         out["history"] = light["summary/residual_history"][()].tolist()
         if "--dense" in sys.argv:

@@ -79,7 +79,7 @@ const template = readFileSync(join(folder, "template.html"), "utf8");
 makePage(template, "cornell", "cornell-box.obj", []);
 makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", "jacobi"]);
 makePage(template, "sweeps", "cornell-box.obj", ["--patches", "400", "--solver", "gauss-seidel"]);
-makePage(template, "shared", "furnished-room.obj", ["--patches", "200"], ["--elements", "off"]);
+makePage(template, "nodes", "furnished-room.obj", ["--method", "cut"], ["--elements", "off"]);
 makePage(template, "textured", join(here, "textured.obj"), ["--patches", "150", "--sky", "0.5,0.6,0.8"]);
 writeFileSync(join(pages, "empty.html"), template);
 

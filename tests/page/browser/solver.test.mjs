@@ -11,7 +11,7 @@ const { Relight } = await module("relight");
 const { VectorProduct } = await module("vector_product");
 const { Session } = await module("session");
 const { LightWithin } = await module("within");
-const { withMaterials, unknownMeans, radiosityOf } = await module("light");
+const { directIrradiance, materialsOfNodes, nodeMeans, patchIrradiance, radiosityOf, withMaterials } = await module("light");
 const { TriangleTree } = await module("bvh");
 const { readContainer } = await module("container");
 
@@ -20,9 +20,9 @@ const data = await pageData("small.html");
 const truth = results("small.h5", "--dense");
 const quantised = data.header.quantisation.largest_relative_error;
 
-function factorsIn({ header, unknownArea, factorBegin, factorColumn, factorCode }) {
+function factorsIn({ header, nodeArea, factorBegin, factorColumn, factorCode }) {
   const { lowest, step } = header.quantisation;
-  return { area: unknownArea, begin: factorBegin, column: factorColumn, code: factorCode, lowest, step };
+  return { area: nodeArea, begin: factorBegin, column: factorColumn, code: factorCode, lowest, step };
 }
 const stored = factorsIn(data);
 const factors = expand(stored);
@@ -187,22 +187,17 @@ test("Southwell's first shot is the lamp's light, and what waits is its residual
   assert.ok(Math.abs(solver.southwellResidual(system, state) - residual) < 1e-9);
 });
 
+const dark = new Float32Array(data.emission.length);
+const materialsWith = ({ emission, reflectance }) => ({ emission, reflectance, direct: dark });
+
 function session(withKernel = true) {
-  const materials = { emission: data.emission, reflectance: data.reflectance, lights: [] };
-  const load = {
-    stored,
-    order: null,
-    materials,
-    irradiance: unknownMeans(data, data.irradiance),
-    lights: [],
-    seen: null,
-  };
+  const load = { stored, order: null, materials: materialsWith(data), irradiance: data.irradiance, arePatches: true };
   return new Session(load, withKernel ? kernel : null);
 }
 
 // Before the first shot nothing was sent: the brightest lamp waits, and it is what residuals are relative to.
 test("a watched run of Southwell starts with all of the lamps' light unsent", () => {
-  const materials = { emission: data.emission, reflectance: data.reflectance, lights: [] };
+  const materials = materialsWith(data);
   const watched = session();
   assert.equal(watched.start(1, "southwell", materials).residual, 1);
   let last = 1;
@@ -220,7 +215,7 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
     emission: emission.map((x) => 2 * x),
   }));
   const doubled = withMaterials(data, states);
-  const lamp = session().relight({ ...doubled, lights: [] }, 1000);
+  const lamp = session().relight(materialsWith(doubled), 1000);
   assert.ok(lamp.products <= 2, `${lamp.products} products`); // the start is right but for the 16 bits
   assert.ok(
     relativeError(
@@ -236,7 +231,7 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
     [() => 0.95, false],
   ]) {
     const reflectance = data.reflectance.map(turn);
-    const relit = session(vectors).relight({ emission: data.emission, reflectance, lights: [] }, 10000);
+    const relit = session(vectors).relight(materialsWith({ emission: data.emission, reflectance }), 10000);
     const expected = solve("gauss-seidel", { ...system, reflectance }, 400);
     const radiosity = radiosityOf({ emission: data.emission, reflectance, irradiance: relit.irradiance });
     assert.ok(relit.converged);
@@ -250,55 +245,31 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
   }
 });
 
-const shared = await pageData("shared.html");
-const sharedMaterials = (reflectance) => ({
-  emission: unknownMeans(shared, shared.emission),
-  reflectance: unknownMeans(shared, reflectance),
-  lights: [],
-  patches: { emission: shared.emission, reflectance },
-});
-function sharedSession() {
-  const irradiance = unknownMeans(shared, shared.irradiance);
-  const load = {
-    stored: factorsIn(shared),
-    order: null,
-    materials: sharedMaterials(shared.reflectance),
-    irradiance,
-    lights: [],
-    seen: shared.seen,
-  };
-  return new Session(load, kernel);
-}
+// Patches summed to nodes: the light of the program stands at the stored materials, whatever the nodes' form factors.
+test("where patches are summed to nodes the stored light comes back, and a lamp alone scales it", async () => {
+  const nodes = await pageData("nodes.html");
+  const before = nodes.header.materials.map(({ reflectance, emission }) => ({ reflectance, emission }));
+  const direct = directIrradiance(nodes, before, []);
+  const materials = materialsOfNodes(nodes, withMaterials(nodes, before), direct);
+  assert.ok(materials.emission.every((e) => e === 0)); // each lamp is known patch by patch
+  const session = new Session({
+    stored: factorsIn(nodes), order: null, materials, irradiance: nodeMeans(nodes, nodes.irradiance), arePatches: false,
+  }, kernel);
+  const means = nodeMeans(nodes, direct);
+  const reference = { direct, reflected: session.loaded.reference.map((h, k) => Math.max(0, h - means[k])) };
+  const again = patchIrradiance(nodes, session.loaded.reference, direct, reference);
+  assert.ok(relativeError(again, nodes.irradiance) < 1e-4);
 
-// Form factors and sums over rays are those of the program to 16 bits: 3e-5 here.
-test("where patches share unknowns the page finds the light of the program by itself", () => {
-  const relit = sharedSession().relight(sharedMaterials(shared.reflectance), 10000);
-  assert.ok(relit.converged);
-  assert.ok(relativeError(relit.ofPatches, results("shared.h5").irradiance) < 2e-4);
-});
-
-test("light of patches that share unknowns, cut short, goes on to the same light", () => {
-  const materials = sharedMaterials(shared.reflectance.map((x) => 0.5 * x));
-  const whole = sharedSession().relight(materials, 10000);
-  const cut = sharedSession();
-  let part = cut.relight(materials, 0);
-  assert.equal(part.ofPatches, null);
-  while (!part.converged) part = cut.relight(null, 0);
-  assert.deepEqual(part.ofPatches, whole.ofPatches);
-});
-
-// Slopes found in one light take patches below 0 where the mean is far lower.
-test("irradiance of patches is never negative, and its means are those of unknowns", () => {
-  const within = new LightWithin(shared.seen);
-  within.look(Float64Array.from(shared.irradiance), [0, 0, 0]);
-  const means = Float64Array.from(unknownMeans(shared, shared.irradiance), (h) => h / 1000);
-  const around = Float32Array.from(within.around(means));
-  assert.ok(around.every((h) => h >= 0) && around.some((h) => h === 0));
-  assert.ok(relativeError(unknownMeans(shared, around), means) < 1e-6); // single precision
+  const bright = before.map(({ reflectance, emission }) => ({ reflectance, emission: emission.map((e) => 3 * e) }));
+  const tripled = directIrradiance(nodes, bright, []);
+  const relit = session.relight(materialsOfNodes(nodes, withMaterials(nodes, bright), tripled), 10000);
+  const three = patchIrradiance(nodes, relit.irradiance, tripled, reference);
+  // Relighting ends at 5e-5 of the mean irradiance.
+  assert.ok(relativeError(three, nodes.irradiance.map((h) => 3 * h)) < 2e-4);
 });
 
 test("a relight that is cut short goes on to the same light", () => {
-  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), lights: [] };
+  const materials = materialsWith({ emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x) });
   const whole = session().relight(materials, 10000);
   const cut = session();
   let part = cut.relight(materials, 0),
@@ -312,7 +283,7 @@ test("a relight that is cut short goes on to the same light", () => {
 });
 
 test("warming the solver up changes nothing", () => {
-  const materials = { emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x), lights: [] };
+  const materials = materialsWith({ emission: data.emission, reflectance: data.reflectance.map((x) => 0.6 * x) });
   const warmed = session();
   warmed.warm();
   assert.deepEqual(warmed.relight(materials, 10000).irradiance, session().relight(materials, 10000).irradiance);
@@ -352,7 +323,7 @@ test("damaged data are refused with a line that says what", () => {
   assert.throws(() => readContainer(new ArrayBuffer(40)), /do not begin with RADPAGE1.*radiosity view/);
   const header = JSON.stringify({
     patches: 1,
-    unknowns: 1,
+    nodes: 1,
     arrays: { position: { type: "u8", offset: 0, length: 4 } },
   });
   const bytes = new TextEncoder().encode(`RADPAGE1\0\0\0\0\0\0\0\0${header}`);

@@ -17,7 +17,7 @@
 #include "formfactor/row_accounts.h"
 #include "matrix/dealt_rows.h"
 #include "matrix/shared_rows.h"
-#include "mesh/clusters/canonical_order.h"
+#include "mesh/patches/canonical_order.h"
 #include "mesh/patches/enclosures.h"
 #include "radiosity/closure.h"
 #include "radiosity/matrix_functions.h"
@@ -36,14 +36,14 @@ constexpr std::size_t kMostEmitterPairs = 1'000'000;
 constexpr double kMostMissing = 0.01;
 
 /// The emitters whose light is to be good to some percent at each receiver.
-std::vector<Index> emittersOf(const FormFactorOptions& options, std::size_t unknowns) {
-  if (options.exact_rows.size() * unknowns > kMostEmitterPairs) return {};
+std::vector<Index> emittersOf(const FormFactorOptions& options, std::size_t patches) {
+  if (options.exact_rows.size() * patches > kMostEmitterPairs) return {};
   return options.exact_rows;
 }
 
 /// The results that rows are stored into, and the inputs that they are made from.
 struct RowStore {
-  /// `emitting`: unknowns.
+  /// `emitting`: patches.
   RowStore(const PatchMesh& mesh, const ExactScene& scene, const FormFactorOptions& options,
            std::span<const Index> emitting, const std::shared_ptr<ScratchMemory>& scratch)
       : matrix(std::make_shared<SymmetricMatrix>(mesh.area, scene.order.patch,
@@ -260,7 +260,7 @@ FormFactors Exact::make(KnownRows /*known*/, const RowRun& run) const {
   report.simd_target = clipKernels(options().simd).target;
   report.empty_rows = n - scene.order.ranked;
 
-  std::vector<Index> emitting = emittersOf(options(), mesh().unknowns());
+  std::vector<Index> emitting = emittersOf(options(), mesh().size());
   std::size_t recheck_every = recheckEvery(estimate_.occluded_pairs, tolerance());
   if (run.processes != nullptr) {
     run.processes->broadcastValue(recheck_every);
@@ -278,7 +278,7 @@ FormFactors Exact::make(KnownRows /*known*/, const RowRun& run) const {
   reportCounts(scene, sums, report.exact);
   noteFallbacks(sums.occluded, report);
   setErrors(scene.order, sums.error, kernels.closed_form, result);
-  ClosedRows closed(mesh(), false);
+  ClosedRows closed(mesh());
   setAccounts(mesh(), scene.order, tolerance(), closed, result);
   findUnexplained(mesh(), scene.order, kernels.closed_form, result);
   if (closed.any() && options().closure != ClosureMode::off) {

@@ -8,7 +8,7 @@
 #include "formfactor/exact/assembly/row_assembly.h"
 #include "formfactor/exact/assembly/task_blocks.h"
 #include "formfactor/exact/error_model.h"
-#include "formfactor/unknown_rows.h"
+#include "formfactor/wanted_rows.h"
 #include "matrix/run_row.h"
 #include "matrix/uncertain_row.h"
 
@@ -39,11 +39,9 @@ constexpr double kLeadingClipSeconds = 0.06;
 constexpr double kRecheckAll = 256;
 constexpr double kRecheckMost = 16;
 
-std::vector<std::uint8_t> patchesOf(const PatchMesh& mesh, std::span<const Index> wanted) {
-  std::vector<std::uint8_t> flags(mesh.size(), 0);
-  for (Index i = 0; i < mesh.size(); ++i) {
-    flags[i] = std::binary_search(wanted.begin(), wanted.end(), mesh.unknownOf(i)) ? 1 : 0;
-  }
+std::vector<std::uint8_t> flagsOf(std::span<const Index> wanted, std::size_t patches) {
+  std::vector<std::uint8_t> flags(patches, 0);
+  for (const Index i : wanted) flags[i] = 1;
   return flags;
 }
 
@@ -66,7 +64,7 @@ LeadingRows::LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted,
     : mesh_(mesh),
       wanted_(std::move(wanted)),
       options_(options),
-      scene_(mesh, progress, patchesOf(mesh, wanted_)) {}
+      scene_(mesh, progress, flagsOf(wanted_, mesh.size())) {}
 
 RowSample LeadingRows::sample(Progress& progress) const {
   RowSample sample;
@@ -95,8 +93,7 @@ double LeadingRows::seconds(const RowSample& sample, Progress& progress) const {
 
 std::size_t LeadingRows::bytes() const {
   constexpr std::size_t kElementBytes = 512;  // as estimateExact()
-  return scene_.elements.size() * kElementBytes +
-         UnknownRows::bytes(wanted_.size(), mesh_.unknowns()) +
+  return scene_.elements.size() * kElementBytes + WantedRows::bytes(wanted_.size(), mesh_.size()) +
          allowedThreads() * scene_.tasks.panelBytes(scene_.elements);
 }
 
@@ -124,7 +121,7 @@ std::vector<KnownRow> LeadingRows::compute(Progress& progress) const {
   const PatchOrder& order = scene_.order;
   Triangle triangle(mesh_, order);
   const double raise = fill(triangle, kernels, progress);
-  UnknownRows rows(mesh_, wanted_);
+  WantedRows rows(mesh_.size(), wanted_);
   const double closed_forms = kRowClosedForms * kernels.closed_form;
   std::vector<double> errors(mesh_.size());
   const std::size_t last = order.rank[scene_.tasks[tasks - 1].back().end - 1];

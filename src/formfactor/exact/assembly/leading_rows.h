@@ -1,4 +1,4 @@
-// The exact rows of a few unknowns, without those of all others.
+// The exact rows of a few patches, without those of all others.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace radiosity {
 
-/// A mesh prepared for the exact rows of some unknowns: their polygons lead, so that their rows of
+/// A mesh prepared for the exact rows of some patches: their polygons lead, so that their rows of
 /// the triangle hold every pair that they are an end of.
 class LeadingRows {
  public:
-  /// `wanted`: unknowns, ascending, each once. `mesh` is kept by reference. Steps `progress` by
+  /// `wanted`: patches, ascending, each once. `mesh` is kept by reference. Steps `progress` by
   /// ExactScene::kSteps. Throws Cancelled.
   LeadingRows(const PatchMesh& mesh, std::vector<Index> wanted, const FormFactorOptions& options,
               Progress& progress);

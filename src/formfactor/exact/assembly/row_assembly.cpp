@@ -72,14 +72,10 @@ PatchOrder::PatchOrder(const PatchMesh& mesh, const ElementSet& elements)
   }
 }
 
-Emitters::Emitters(const PatchMesh& mesh, const PatchOrder& order, std::span<const Index> unknowns)
-    : unknown(mesh.size()),
-      emits(mesh.size()),
+Emitters::Emitters(const PatchMesh& mesh, const PatchOrder& order, std::span<const Index> patches)
+    : emits(mesh.size(), 0),
       scene_area(std::accumulate(order.area.begin(), order.area.end(), 0.0)) {
-  for (Index i = 0; i < mesh.size(); ++i) {
-    unknown[i] = Index(mesh.unknownOf(i));
-    emits[i] = std::ranges::binary_search(unknowns, unknown[i]) ? 1 : 0;
-  }
+  for (const Index i : patches) emits[i] = 1;
 }
 
 RowSums& RowSums::operator+=(const RowSums& other) {
@@ -192,12 +188,12 @@ void RowAssembly::evaluateOccluded(RowSums& sums) {
 }
 
 Index RowAssembly::receiverOf(const OccludedPair& pair) const {
-  const auto& [unknown, emits, scene_area] = *context_.emitters;
+  const std::vector<std::uint8_t>& emits = context_.emitters->emits;
   if (pair.column >= context_.elements.patch_elements) return kNone;
   const Index row = context_.elements.patch[pair.row];
   const Index column = context_.elements.patch[pair.column];
-  if (emits[row] != 0) return unknown[column];
-  return emits[column] != 0 ? unknown[row] : kNone;
+  if (emits[row] != 0) return column;
+  return emits[column] != 0 ? row : kNone;
 }
 
 std::vector<std::size_t> RowAssembly::uncertainPairs() const {

@@ -44,11 +44,10 @@ struct RowSums {
   double seconds_assembly = 0;
 };
 
-/// Unknowns that emit. What others get from them is to be good to some percent itself, and not just
+/// Patches that emit. What others get from them is to be good to some percent itself, and not just
 /// beside the whole row of the emitter.
 struct Emitters {
-  Emitters(const PatchMesh& mesh, const PatchOrder& order, std::span<const Index> unknowns);
-  std::vector<Index> unknown;       ///< N: that each patch belongs to
+  Emitters(const PatchMesh& mesh, const PatchOrder& order, std::span<const Index> patches);
   std::vector<std::uint8_t> emits;  ///< N
   double scene_area;                ///< of all patches, in ElementSet's units
 };
@@ -104,7 +103,7 @@ class RowAssembly {
   /// Evaluates pairs of emitters and receivers strictly if what the receivers get is too uncertain.
   void replaceUncertain();
   std::vector<std::size_t> uncertainPairs() const;
-  /// The unknown that gets light by a pair; kNone if neither end emits.
+  /// The patch that gets light by a pair; kNone if neither end emits.
   Index receiverOf(const OccludedPair& pair) const;
   void recheck(RowSums& sums);
   std::vector<OccludedExchange> strictly(std::span<const std::size_t> which) const;

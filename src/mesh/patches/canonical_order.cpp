@@ -1,4 +1,4 @@
-#include "mesh/clusters/canonical_order.h"
+#include "mesh/patches/canonical_order.h"
 
 #include <algorithm>
 #include <numeric>
