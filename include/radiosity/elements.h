@@ -185,10 +185,16 @@ class LightAtPoints {
   const ElementRoots& roots() const;
   /// The report on the sources alone; it does not include the points.
   const ElementReport& report() const;
-  /// Adds the irradiance (bands values, W/m^2) at a point of a root. Indirect light takes `rays`
-  /// rays, a power of two, kFewestRays to kMostRays; the point determines their directions. Returns
-  /// the square of the standard error, summed over the bands.
-  double add(std::size_t root, const Vec3& at, int rays, std::span<double> sum) const;
+  /// Adds the irradiance (bands values, W/m^2) at a point of a root: that of emitters and lamps to
+  /// `direct`, all else to `indirect`, which takes `rays` rays, a power of two, kFewestRays to
+  /// kMostRays; the point determines their directions. Returns the square of the standard error,
+  /// summed over the bands.
+  double add(std::size_t root, const Vec3& at, int rays, std::span<double> direct,
+             std::span<double> indirect) const;
+  /// The same, both in one sum.
+  double add(std::size_t root, const Vec3& at, int rays, std::span<double> sum) const {
+    return add(root, at, rays, sum, sum);
+  }
 
  private:
   struct Inside;

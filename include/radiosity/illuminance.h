@@ -167,11 +167,6 @@ std::array<Measured, 4> uprightSides(Up up);
 /// "+x" of x_plus, and so on; "" of `facing` and `cylinder`.
 const char* axisOf(Measured what);
 
-/// Illuminance, lx, of irradiance in W/m^2 a band: 683 lm/W times its luminance (Rec. 709) for
-/// three bands; one band is grey, light of 683 lm/W times its value. Errors: InputError for other
-/// numbers of bands.
-double illuminanceOf(std::span<const double> irradiance);
-
 /// Light at points of a solved scene. `irradiance`: N * bands, of the solved patches, W/m^2;
 /// `normals`: a point each. A point may stand anywhere; it is taken to be 2e-6 of the scene's
 /// diagonal off its place, along its normal. Direct light, facing, of surfaces and of points is
@@ -211,9 +206,10 @@ IlluminanceSummary summaryOf(const MeasuringPoints& points, const PointLightValu
 
 /// A plan of a grid, ready for an sRGB file: illuminance as false colours with lines at round
 /// numbers, values written at points, as many as can be read, and a legend below. Points that stand
-/// in bodies are grey. Errors: InputError for points that are no grid.
+/// in bodies are grey. The colours' ends are `low` and `high`, lx, or those of the values if low >=
+/// high. Errors: InputError for points that are no grid.
 Image illuminancePlan(const MeasuringPoints& points, const PointLightValues& light,
-                      std::size_t first);
+                      std::size_t first, double low = 0, double high = 0);
 
 /// Pictures below each other, on white.
 Image stacked(std::span<const Image> pictures);

@@ -23,6 +23,17 @@ enum class Up { y, z };
 /// Lumens a watt: of light whose Y is that of the bands, linear Rec. 709 (CIE 1931, photopic).
 inline constexpr double kLumensPerWatt = 683;
 
+/// Whether so many bands have a photometric value: three (linear Rec. 709), or one, which is grey.
+constexpr bool isPhotometric(int bands) { return bands == 1 || bands == 3; }
+/// The photometric value of a radiometric one a band: lx of irradiance in W/m^2, cd/m^2 of radiance
+/// in W/m^2/sr, lm of W; kLumensPerWatt times luminance, or times the one band. Errors: InputError
+/// unless isPhotometric().
+double photometricOf(std::span<const double> bands);
+/// The same of each row of N * bands values: N.
+std::vector<double> photometricOfEach(std::span<const double> rows, int bands);
+/// The conversion in words: "683 lm/W at Y of Rec. 709".
+std::string photometricText(int bands);
+
 /// The way by which a light reaches a place, unless something stands in it.
 struct LightRay {
   static constexpr double kOutside = std::numeric_limits<double>::infinity();
@@ -285,6 +296,7 @@ struct Light {
   std::string name;
   LightKind kind;
   std::vector<double> strength;  ///< a value for each band, in the unit of traits(); >= 0
+  bool photometric = false;      ///< it was given in lm, cd, lx or cd/m^2
 
   bool operator==(const Light&) const = default;
   const LightTraits& traits() const;
@@ -339,6 +351,8 @@ Light lightOf(const std::string& word, const std::string& text, int bands = 3);
 /// The same, the kind's word before the rest: "point,800cd,at=1,2,2.5".
 Light lightOf(const std::string& text);
 
+/// Whether light is told in lux beside W/m^2: a light that shines was given so.
+bool arePhotometric(std::span<const Light> lights);
 bool anyShines(std::span<const Light> lights);
 /// Whether one that shines comes from beyond the scene.
 bool anyShinesIn(std::span<const Light> lights);

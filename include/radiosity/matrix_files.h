@@ -93,9 +93,11 @@ FormFactors factorsOfMatrix(std::shared_ptr<const ExchangeMatrix> matrix, std::v
 /// The same of a file, with its error figures.
 FormFactors factorsOfFile(const MatrixFile& file);
 
-/// Writes a line per row: row (from 1), name, area_m2, radiosity, irradiance and net_flux B - H,
-/// W/m^2, by band.
+/// Writes a line per row: row (from 1), name, area_m2, radiosity, irradiance and net_flux B - H by
+/// band ("radiosity_1_W_per_m2"). `photometric`: then illuminance_lx and luminance_cd_per_m2, of
+/// bands that have them (light.h).
 void writeLightCsv(const std::string& path, std::span<const std::string> names,
-                   std::span<const double> area, const Solution& solution);
+                   std::span<const double> area, const Solution& solution,
+                   bool photometric = false);
 
 }  // namespace radiosity

@@ -26,6 +26,7 @@
 #include "radiosity/pipeline.h"
 #include "radiosity/point_factors.h"
 #include "radiosity/point_materials.h"
+#include "radiosity/radiant_temperature.h"
 #include "radiosity/render.h"
 #include "radiosity/report_line.h"
 #include "radiosity/results.h"

@@ -23,6 +23,14 @@ struct Image {
   std::vector<float> rgba;  ///< width * height * 4; alpha 0 where nothing was hit
 };
 
+/// Values beside a picture's colours, which .exr has in channels of their own.
+struct ImageLayer {
+  std::string name;                   ///< "normal"; its channels are "normal.X" and so on
+  std::string unit;                   ///< "m"; empty: a pure number
+  std::vector<std::string> channels;  ///< "X", "Y", "Z"; none: one channel, called `name`
+  std::vector<float> values;          ///< width * height * channels, row-major, top row first
+};
+
 struct RenderOptions {
   int width = 512;  ///< 1 to 16384
   int height = 512;
@@ -145,9 +153,36 @@ std::vector<double> reflectedLight(std::span<const double> radiosity,
 /// as rgbOf().
 SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterials& materials);
 
-/// The same with the sky, if it shines, behind everything.
+/// What a picture's radiance is made of, a row a pixel, as its colours the mean over the samples
+/// that hit: radiance = direct + indirect.
+struct PictureParts {
+  /// W/m^2/sr, red, green and blue: own emission, and the reflection of what emitters and lamps
+  /// send straight; of the sky behind, all.
+  std::vector<float> direct;
+  std::vector<float> indirect;  ///< likewise, all else
+  std::vector<float> albedo;    ///< reflectance: red, green and blue
+  /// Standard error of the pixel's light by rays, over that light; empty: not known pixel by pixel.
+  std::vector<float> error;
+};
+
+/// The same with the sky, if it shines, behind everything. `parts`, if not null, is filled: errors
+/// as well InputError for light that has neither elements nor points, where direct and indirect
+/// light are not told apart.
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
-                     const RenderOptions& options, Progress& progress);
+                     const RenderOptions& options, Progress& progress,
+                     PictureParts* parts = nullptr);
+
+/// The same light as it falls: on white surfaces that do not shine, B is the irradiance, and the
+/// picture's radiance irradiance / pi; there is no sky behind. `irradiance`: of the solution,
+/// N * bands, W/m^2. Errors: as rgbOf().
+SurfaceLight fallingLight(SurfaceLight light, std::span<const double> irradiance, int bands);
+
+/// The layers of a picture. Of the patch in the middle of each pixel: depth (m, along the view
+/// direction; infinite where nothing is), normal (unit, in the scene's axes; 0 where nothing is),
+/// patch and surface (their numbers from 0, exact below 2^24; -1 where nothing is). Then those of
+/// `parts`: albedo, direct, indirect and, where it is known, error.
+std::vector<ImageLayer> pictureLayers(const PatchMesh& mesh, const Camera& camera,
+                                      const RenderOptions& options, PictureParts parts);
 
 /// Light that is gathered for every pixel.
 struct PixelGatherOptions {
@@ -181,11 +216,11 @@ struct PixelGather {
 
 /// The picture of `light.points`, evaluated where samples of pixels see a patch: at four samples of
 /// a pixel that sees one patch alone, at all samples of others. renderRadiance() interpolates the
-/// same light between elements' vertices. The same bits for any number of threads. Errors: as
-/// render(), and InputError for options out of range. Throws Cancelled.
+/// same light between elements' vertices. The same bits for any number of threads. `parts`, if not
+/// null, is filled. Errors: as render(), and InputError for options out of range. Throws Cancelled.
 PixelGather gatherRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                            const RenderOptions& options, const PixelGatherOptions& gather,
-                           Progress& progress);
+                           Progress& progress, PictureParts* parts = nullptr);
 
 /// Estimates the points, rays and seconds of gatherRadiance() from one pixel in each 16 x 16.
 PixelGatherReport foreseeGather(const PatchMesh& mesh, const SurfaceLight& light,
@@ -244,5 +279,11 @@ Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values,
 /// the picture, which grows by it.
 Image falseColourPixels(int width, int height, std::span<const double> values,
                         const FalseColour& legend);
+
+/// The same for the values of a picture of the mesh, with isolines at round numbers, which the
+/// legend tells; they end where surfaces or sharp edges (options.crease) do.
+Image falseColourPicture(const PatchMesh& mesh, std::span<const double> values,
+                         const FalseColour& legend, const Camera& camera,
+                         const RenderOptions& options);
 
 }  // namespace radiosity

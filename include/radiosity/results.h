@@ -19,6 +19,7 @@
 #include "radiosity/light_basis.h"
 #include "radiosity/lightmap.h"
 #include "radiosity/patch_mesh.h"
+#include "radiosity/radiant_temperature.h"
 #include "radiosity/render.h"
 #include "radiosity/scene.h"
 #include "radiosity/solve.h"
@@ -117,7 +118,8 @@ Results readResults(const std::string& path, bool with_factors = true,
 ///                  patches) if A_i F_ij = A_j F_ji was stored once a pair; normal, centroid,
 ///                  surface, surface_names (those of /mesh); method, key, geometry_hash, report/
 ///   /solution      radiosity, irradiance, reflectance, emission (N x bands), sky (an attribute of
-///                  bands numbers; none: dark), summary/, key
+///                  bands numbers; none: dark), summary/, key; of photometric lamps, for others to
+///                  read, illuminance (lx) and luminance (cd/m^2), N
 ///   /elements      bands, key, report/; roots/ as ElementRoots: patch, corner (R x 4), of_patch;
 ///                  direct/ and indirect/ as ElementField: elements/ (a row an element, the first R
 ///                  the roots), points, vertices, values (V x bands, W/m^2)
@@ -199,8 +201,11 @@ int writeLightmapGlb(const std::string& path, const Scene& scene, const Lightmap
 /// .exr: 32-bit floats, linear, colours multiplied by alpha as the format asks (a pixel is then
 /// what reaches it; a miss is 0,0,0,0). .png: 8 bits, colours not multiplied; linear images get the
 /// sRGB curve, display-referred ones are stored as they are. `metadata`: name, value pairs.
+/// `layers`: of .exr alone; their values are stored as they are, their units as attributes
+/// ("depth.unit").
 void writeImage(const std::string& path, const Image& image, bool display_referred,
-                std::span<const std::pair<std::string, std::string>> metadata = {});
+                std::span<const std::pair<std::string, std::string>> metadata = {},
+                std::span<const ImageLayer> layers = {});
 
 /// Reads an image: numbers as stored (no curve is undone), alpha divided out if the format
 /// multiplies by it.
@@ -239,9 +244,15 @@ LitMesh readLitMesh(const std::string& path);
 /// faces of a small cube and of half cylinders that face the four sides, lx; irradiance a band,
 /// W/m^2, all, direct and indirect; the standard error over all light; 1 where the point stands in
 /// a body; the name of its set. `light`: of all sets in turn. Errors: as the others, and
-/// illuminanceOf().
+/// photometricOf().
 void writeIlluminance(const std::string& path, std::span<const MeasuringPoints> sets,
                       const PointLightValues& light);
+
+/// Writes radiant temperatures at points likewise, K: standing and seated, then of the faces of a
+/// small cube; the share of surfaces in view; the name of the set. `temperatures`: of all sets in
+/// turn.
+void writeRadiantTemperatures(const std::string& path, std::span<const MeasuringPoints> sets,
+                              const RadiantTemperatures& temperatures);
 
 /// Writes heat exchange by surface: a header with units in its names, then a line a surface, all
 /// digits; unknown cells are empty. Errors: as the others.

@@ -160,6 +160,14 @@ struct Solution {
   SolveSummary summary;
 };
 
+/// A solution in photometric units, a value a row.
+struct PhotometricRows {
+  std::vector<double> illuminance;  ///< lx, of H
+  std::vector<double> luminance;    ///< cd/m^2, of B / pi
+};
+/// Errors: as photometricOf().
+PhotometricRows photometricRows(const Solution& solution);
+
 /// The largest share of the power coming in by which an account may be off that is made with these
 /// form factors: what they state as their error, and 1% at least; 10% for hemicubes, which state
 /// none. No limit for matrices from elsewhere: areas may be missing, and notes say what is odd.

@@ -29,8 +29,9 @@ std::vector<CellField> factorFields(const FormFactors& factors);
 
 /// By band, W/m^2: radiosity B, irradiance H, and net_flux, the flux given off in excess of the
 /// flux absorbed, q = B - H = E - (1 - rho) H: above 0 for a lamp, below 0 for an absorbing
-/// surface.
-std::vector<CellField> lightFields(const Solution& solution);
+/// surface. `photometric`: beside them illuminance, lx, and luminance, cd/m^2, of bands that have
+/// them (light.h).
+std::vector<CellField> lightFields(const Solution& solution, bool photometric = false);
 
 /// temperature, K; radiosity J and irradiance H by band, net_flux and convection, W/m^2.
 std::vector<CellField> heatFields(const HeatSolution& heat);

@@ -28,10 +28,12 @@ struct DecodedImage {
   std::string too_large;  ///< "has W x H pixels, ...; cure" if the size alone is the reason
 };
 
-/// Four channels, R G B A, as 32-bit floats or bytes, whichever the file's format takes.
+/// Channels as 32-bit floats or bytes, whichever the file's format takes.
 struct ImageToEncode {
   int width = 0;
   int height = 0;
+  /// Those of a pixel together, R, G, B, A first.
+  std::vector<std::string> channels = {"R", "G", "B", "A"};
   bool floating = false;  ///< `pixels` are floats, else bytes
   const void* pixels = nullptr;
   bool multiplied = false;   ///< colours are multiplied by alpha

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "radiosity/base.h"
 
@@ -23,6 +24,16 @@ inline double luminanceOf(const Vec3& rgb) {
 inline double brightnessOf(std::span<const double> bands) {
   if (bands.size() == 3) return luminanceOf({bands[0], bands[1], bands[2]});
   return std::accumulate(bands.begin(), bands.end(), 0.0);
+}
+
+/// The same of each row of N * bands values: N.
+inline std::vector<double> brightnessOfEach(std::span<const double> rows, int bands) {
+  const auto width = std::size_t(bands);
+  std::vector<double> values(rows.size() / width);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = brightnessOf(rows.subspan(width * i, width));
+  }
+  return values;
 }
 
 /// The words for brightnessOf() with this many bands, which follow the name of a quantity.

@@ -20,9 +20,10 @@ void writeCells(Session& session, Pipeline& pipeline, OutputSet& files, const Mi
   };
   if (command != Command::mesh) append(factorFields(pipeline.factors()), ", accounts of rows");
   if (mix != nullptr) {
-    append(lightFields(mix->solution), ", mixed light");
+    append(lightFields(mix->solution, arePhotometric(mix->materials.lights)), ", mixed light");
   } else if (command == Command::solve && !pipeline.solution().radiosity.empty()) {
-    append(lightFields(pipeline.solution()), ", light");
+    append(lightFields(pipeline.solution(), arePhotometric(pipeline.materials().lights)),
+           ", light");
   }
   files.write(Format::vtp, what,
               [&](const std::string& temporary) { writeVtp(temporary, mesh, fields); });
@@ -34,8 +35,9 @@ void writeLightTable(Pipeline& pipeline, const Solution& light, OutputSet& files
   std::vector<std::string> names;
   names.reserve(mesh.size());
   for (const Index surface : mesh.surface) names.push_back(mesh.surface_names[surface]);
+  const bool photometric = arePhotometric(pipeline.materials().lights);
   files.write(Format::light_csv, "light by patch", [&](const std::string& temporary) {
-    writeLightCsv(temporary, names, mesh.area, light);
+    writeLightCsv(temporary, names, mesh.area, light, photometric);
   });
 }
 

@@ -123,11 +123,14 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   }
   if (command == Command::heat) {
     addHeatOptions(*sub, r);
+    addPointOptions(*sub, r);
     return sub;
   }
   addOptionsOf<SolveOptions>(*sub, r, "Solve");
   if (command == Command::illuminance) {
     addPointOptions(*sub, r);
+    addOptionsOf<IlluminanceOptions>(*sub, r, "Points");
+    addRangeOption(*sub, r, "Points");
     return sub;
   }
   if (command == Command::solve) addBasisOption(*sub, r);

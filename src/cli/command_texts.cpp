@@ -100,6 +100,7 @@ const char* examplesOf(Command command) {
              "  radiosity heat oven.obj --thermal oven.csv -o oven.h5 -o surfaces.csv\n"
              "  radiosity heat oven.h5 --thermal oven.csv --condition heater.power=900\n"
              "  radiosity heat oven.h5 -o again.csv\n"
+             "  radiosity heat oven.h5 --grid floor:1.1 --point-table radiant.csv\n"
              "  radiosity heat enclosure.vf --condition 1.temperature=550 --condition '*.flux=0'\n"
              "  radiosity heat plate.stl --condition '*.emissivity=0.9' --condition '*.flux=100'\n"
              "             --sky-temperature 255 -o plate.vtp";

@@ -147,7 +147,8 @@ void reportRelative(Report& report, const std::string& key, const std::string& l
   }
 }
 
-void reportSurfaces(Report& report, const Comparison& c) {
+/// `unit`: of the means.
+void reportSurfaces(Report& report, const Comparison& c, const std::string& unit) {
   const int bands = int(c.sums.a.size());
   std::vector<std::vector<std::string>> rows;
   for (const SurfaceDifference& s : c.surfaces) {
@@ -165,8 +166,8 @@ void reportSurfaces(Report& report, const Comparison& c) {
     rows.push_back(std::move(row));
   }
   std::vector<Report::Column> columns = {
-      {"name", "surface", false}, {"area_m2", "area m^2"}, {"compared", "compared", false},
-      {"mean_a", "mean A"},       {"mean_b", "mean B"},    {"l2_percent", "L2 %"}};
+      {"name", "surface", false},   {"area_m2", "area m^2"},      {"compared", "compared", false},
+      {"mean_a", "mean A " + unit}, {"mean_b", "mean B " + unit}, {"l2_percent", "L2 %"}};
   for (const std::string& band : bandNames(bands)) {
     columns.push_back({columnKey(band), band + " %"});
   }
@@ -243,7 +244,7 @@ void reportComparison(Report& report, const Comparison& c, bool pictures, bool r
   std::vector<double> difference;
   for (std::size_t b = 0; b < count; ++b) difference.push_back(c.sums.b[b] - c.sums.a[b]);
   report.bands("energy_difference", "  B - A", difference, total);
-  reportSurfaces(report, c);
+  reportSurfaces(report, c, unit);
   report.notes(c.notes);
 }
 

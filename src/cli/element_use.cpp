@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/show.h"
+
 namespace radiosity::cli {
 
 namespace {
@@ -19,7 +21,8 @@ bool showsAllLight(const OutputSet& files) {
 
 /// The reason why no output has elements, and the cure.
 std::string whyNone(const Request& request, const OutputSet& files) {
-  if (!request.show.empty()) return "--show draws what patches have; leave one of the two out";
+  if (parseShow(request.show).quantity)
+    return "--show " + request.show + " draws what patches have; leave one of the two out";
   if (request.flat) return "--flat draws one colour a patch; leave one of the two out";
   const std::string none = files.all().empty()
                                ? "nothing is written"
@@ -53,7 +56,7 @@ void checkVisibleOnly(const Request& request, const ElementUse& use, const Outpu
 
 ElementUse elementUse(const Request& request, const OutputSet& files) {
   const bool asked = request.elements.value_or(false);
-  const bool of_light = request.show.empty() && !request.flat;
+  const bool of_light = !parseShow(request.show).quantity && !request.flat;
   ElementUse use;
   use.shown = request.elements.value_or(true) && of_light && drawsLight(files);
   use.all =

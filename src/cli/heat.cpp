@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/matrix_commands.h"
+#include "cli/radiant.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
@@ -68,6 +69,7 @@ int runHeat(Session& session) {
   OutputSet files = claimOutputs(session);
   if (takesMatrixFile(session.request)) return heatMatrixFile(session, files);
   if (givesConditions(session.request)) givenConditions(session.request);  // errors, before a scene
+  checkRadiant(session.request);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   // We check the conditions first, so that errors are found before form factors are computed.
@@ -76,12 +78,15 @@ int runHeat(Session& session) {
   validate(options.heat_conditions, options.heat);
   session.report.notes(options.heat_conditions.notes);
   noteLightOptions(session, options.heat_conditions.from_materials);
-  pipeline.factors();
+  const std::vector<MeasuringPoints> sets =
+      measuringPoints(session.request.points, pipeline.scene(), session.report);
+  if (pipeline.factors().report.closed) requireWithin(sets, pipeline.mesh().mesh);
   keepFactors(session, pipeline, files);
   const HeatSummary& summary = pipeline.heat().summary;
   const int exit_code = exitCode(session, summary.usable(), summary.message);
   writeStages(session, pipeline, files);
   writeTables(pipeline, files);
+  if (!sets.empty()) measureRadiant(session, pipeline, sets, files);
   writeCells(session, pipeline, files);
   files.commit(session.report, session.progress);
   noteUnsaved(session, pipeline, files);

@@ -11,6 +11,10 @@ namespace {
 
 void requireOwnOptions(const Request& request, const OutputSet& files) {
   refuseSceneOptions(request);
+  if (!request.points.empty() || !request.point_table.empty()) {
+    throw InputError(request.input +
+                     ": form factors alone have no places; give the scene to measure at points");
+  }
   for (const Output& output : files.all()) {
     if (output.format == Format::surface_table || output.format == Format::patch_table) continue;
     throw InputError(output.path + ": heat of a matrix without a scene goes to a .csv");

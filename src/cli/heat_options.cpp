@@ -22,6 +22,9 @@ void addHeatOptions(CLI::App& app, Request& r) {
   app.get_option("--band-edges")->excludes(app.get_option("--band-fractions"));
   add(app, "Heat", "--patch-table", r.patch_table, "FILE.csv",
       "Write the figures of every patch, beside those of surfaces in -o FILE.csv");
+  add(app, "Points", "--point-table", r.point_table, "FILE.csv",
+      "Write mean radiant temperatures at the points: of a person standing, seated, and of the six "
+      "faces of a small cube, K");
   addAreasOption(app, r, "Heat");
 }
 

@@ -38,8 +38,8 @@ void surfaceTable(Report& report, const std::vector<SurfaceHeat>& surfaces) {
                 {"highest_K", "to K"},
                 {"radiosity_W_per_m2", "J W/m^2"},
                 {"irradiance_W_per_m2", "H W/m^2"},
-                {"irradiance_error_W_per_m2", "H +-"},
-                {"net_flux_W_per_m2", "J - H"},
+                {"irradiance_error_W_per_m2", "H +- W/m^2"},
+                {"net_flux_W_per_m2", "J - H W/m^2"},
                 {"radiated_W", "radiated W"},
                 {"convected_W", "convected W"}},
                rows);

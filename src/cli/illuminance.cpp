@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "base/figure_text.h"
-#include "base/geometry/box.h"
 #include "cli/commands.h"
 #include "cli/field_lines.h"
 #include "cli/measuring_points.h"
+#include "cli/show.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
 #include "radiosity/results.h"
@@ -27,6 +27,10 @@ void checkMeasuring(const Request& request, const OutputSet& files) {
         "e.g. --grid floor:.8");
   }
   for (const PointsAsked& asked : request.points) checkPoints(asked);
+  parseRange(request.range);
+  if (!request.range.empty() && !files.has(Format::png)) {
+    throw InputError("--range: is of the plan's colours; name one with -o FILE.png");
+  }
   const bool any_grid = std::ranges::any_of(request.points, [](const PointsAsked& asked) {
     return asked.kind != PointsAsked::Kind::points;
   });
@@ -48,41 +52,14 @@ void requireFewPlans(std::span<const MeasuringPoints> sets, const OutputSet& fil
 }
 
 void requireLuxBands(const Pipeline& pipeline) {
-  illuminanceOf(std::vector<double>(std::size_t(pipeline.bands()), 0.0));
-}
-
-/// Whether all points lie outside of the box around the room.
-bool isBeyond(const MeasuringPoints& set, const PatchMesh& mesh) {
-  constexpr double kRounding = 1e-6;
-  const Box3 room = boxOf(mesh.vertices);
-  const Box3 around = room.grown(kRounding * room.diagonal());
-  return std::ranges::none_of(set.at, [&](const Vec3& p) { return around.contains(p); });
-}
-
-[[noreturn]] void refuseSet(const MeasuringPoints& set, const char* where) {
-  throw InputError(
-      fmt::format("{}: all of its {} points {}; check the height and the unit of the "
-                  "scene (metres here)",
-                  set.name, countText(set.size()), where));
-}
-
-std::vector<MeasuringPoints> measuringPoints(Session& session, const Scene& scene) {
-  std::vector<MeasuringPoints> sets;
-  for (const PointsAsked& asked : session.request.points) {
-    for (MeasuringPoints& set : pointsOf(asked, scene)) {
-      session.report.notes(set.notes);
-      sets.push_back(std::move(set));
-    }
-  }
-  return sets;
+  photometricOf(std::vector<double>(std::size_t(pipeline.bands()), 0.0));
 }
 
 PointLightValues measure(Session& session, Pipeline& pipeline,
                          std::span<const MeasuringPoints> sets) {
-  std::vector<Vec3> at;
+  const std::vector<Vec3> at = placesOf(sets);
   std::vector<Vec3> normals;
   for (const MeasuringPoints& set : sets) {
-    at.insert(at.end(), set.at.begin(), set.at.end());
     normals.insert(normals.end(), set.normal.begin(), set.normal.end());
   }
   return lightAtPoints(pipeline.mesh().mesh, pipeline.materials(), pipeline.solution().irradiance,
@@ -130,9 +107,7 @@ void summarizeSet(Report& report, const std::string& key, const MeasuringPoints&
 
 void summarizeMeasuring(Report& report, const PointLightValues& light, double asked) {
   report.section("measuring", "Measuring");
-  report.text("lumens", "lumens",
-              light.bands == 1 ? fmt::format("{:g} a watt of the one band: grey", kLumensPerWatt)
-                               : fmt::format("{:g} a watt of luminance, Rec. 709", kLumensPerWatt));
+  report.text("lumens", "lumens", photometricText(light.bands));
   FieldLines lines(report);
   IlluminanceReport::describe(lines, light.report);
   if (light.report.direct == DirectLight::hemispheres) {
@@ -153,14 +128,14 @@ void summarizeMeasuring(Report& report, const PointLightValues& light, double as
 }
 
 void writeMeasured(std::span<const MeasuringPoints> sets, const PointLightValues& light,
-                   OutputSet& files) {
+                   const ShownRange& range, OutputSet& files) {
   files.write(Format::illuminance, "illuminance at points",
               [&](const std::string& temporary) { writeIlluminance(temporary, sets, light); });
   files.write(Format::png, "plan, lx", [&](const std::string& temporary) {
     std::vector<Image> plans;
     std::size_t first = 0;
     for (const MeasuringPoints& set : sets) {
-      if (set.grid) plans.push_back(illuminancePlan(set, light, first));
+      if (set.grid) plans.push_back(illuminancePlan(set, light, first, range.low, range.high));
       first += set.size();
     }
     const std::pair<std::string, std::string> about[] = {{"quantity", "illuminance"},
@@ -180,16 +155,13 @@ int runIlluminance(Session& session) {
       !pipeline.fromResultsFile() && !files.has(Format::results);
   requireLuxBands(pipeline);
   requireLight(session, pipeline);
-  const std::vector<MeasuringPoints> sets = measuringPoints(session, pipeline.scene());
+  const std::vector<MeasuringPoints> sets =
+      measuringPoints(session.request.points, pipeline.scene(), session.report);
   requireFewPlans(sets, files);
   if (!files.has(Format::results) && pipeline.onlyAdds()) {
     files.add({session.request.input, Format::results});
   }
-  const PatchMesh& mesh = pipeline.mesh().mesh;
-  const bool closed = pipeline.factors().report.closed;
-  for (const MeasuringPoints& set : sets) {
-    if (closed && isBeyond(set, mesh)) refuseSet(set, "lie beyond the room");
-  }
+  if (pipeline.factors().report.closed) requireWithin(sets, pipeline.mesh().mesh);
   keepFactors(session, pipeline, files);
   const int code = judgeSolution(session, pipeline);
   if (pipeline.solution().summary.status == SolveStatus::singular) {
@@ -206,7 +178,7 @@ int runIlluminance(Session& session) {
     first += sets[k].size();
   }
   summarizeMeasuring(session.report, light, session.request.apply(IlluminanceOptions()).tolerance);
-  writeMeasured(sets, light, files);
+  writeMeasured(sets, light, parseRange(session.request.range), files);
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);
   noteUnsaved(session, pipeline, files);

@@ -51,6 +51,7 @@ void describeStages(Session& session, const Pipeline& pipeline) {
   }
   if (stored.solution) {
     summarizeSolution(report, *stored.solution, made(stored.factors), stored.mesh->mesh,
+                      stored.materials && arePhotometric(stored.materials->lights),
                       pipeline.options().solve, Detail::brief);
   }
   if (stored.elements) summarizeElements(report, *stored.elements, made(stored.factors));

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/parse.h"
+#include "cli/show.h"
 #include "cli/summaries.h"
 
 namespace radiosity::cli {
@@ -54,8 +55,8 @@ void checkMix(const Request& request, const OutputSet& files) {
                       given));
     }
   }
-  if (!request.show.empty()) {
-    throw InputError("--mix: --show draws what the file has; leave one of the two out");
+  if (parseShow(request.show).quantity) {
+    throw InputError("--mix: --show draws what patches of the file have; leave one of the two out");
   }
   const Format shown[] = {Format::glb, Format::light_csv, Format::vtp, Format::png, Format::exr};
   for (const Format format : shown) {

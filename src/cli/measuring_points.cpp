@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
+#include "base/figure_text.h"
+#include "base/geometry/box.h"
 #include "base/parse.h"
+#include "cli/report.h"
 
 namespace radiosity::cli {
 
@@ -65,6 +71,30 @@ PlaneText parsePlane(const std::string& text) {
   return plane;
 }
 
+std::vector<MeasuringPoints> pointsOf(const PointsAsked& asked, const Scene& scene) {
+  switch (asked.kind) {
+    case PointsAsked::Kind::grid: {
+      const GridText grid = parseGrid(asked.text);
+      return pointsOverSurfaces(scene, grid.surface, grid.height, grid.spacing);
+    }
+    case PointsAsked::Kind::plane: {
+      const PlaneText plane = parsePlane(asked.text);
+      return {pointsOnPlane(plane.corners, plane.spacing)};
+    }
+    case PointsAsked::Kind::points:
+      break;
+  }
+  return {readMeasuringPoints(asked.text, scene.up)};
+}
+
+/// Whether all points lie outside of the box around the room.
+bool isBeyond(const MeasuringPoints& set, const PatchMesh& mesh) {
+  constexpr double kRounding = 1e-6;
+  const Box3 room = boxOf(mesh.vertices);
+  const Box3 around = room.grown(kRounding * room.diagonal());
+  return std::ranges::none_of(set.at, [&](const Vec3& p) { return around.contains(p); });
+}
+
 }  // namespace
 
 void checkPoints(const PointsAsked& asked) {
@@ -82,20 +112,35 @@ void checkPoints(const PointsAsked& asked) {
   }
 }
 
-std::vector<MeasuringPoints> pointsOf(const PointsAsked& asked, const Scene& scene) {
-  switch (asked.kind) {
-    case PointsAsked::Kind::grid: {
-      const GridText grid = parseGrid(asked.text);
-      return pointsOverSurfaces(scene, grid.surface, grid.height, grid.spacing);
+std::vector<MeasuringPoints> measuringPoints(std::span<const PointsAsked> asked, const Scene& scene,
+                                             Report& report) {
+  std::vector<MeasuringPoints> sets;
+  for (const PointsAsked& one : asked) {
+    for (MeasuringPoints& set : pointsOf(one, scene)) {
+      report.notes(set.notes);
+      sets.push_back(std::move(set));
     }
-    case PointsAsked::Kind::plane: {
-      const PlaneText plane = parsePlane(asked.text);
-      return {pointsOnPlane(plane.corners, plane.spacing)};
-    }
-    case PointsAsked::Kind::points:
-      break;
   }
-  return {readMeasuringPoints(asked.text, scene.up)};
+  return sets;
+}
+
+std::vector<Vec3> placesOf(std::span<const MeasuringPoints> sets) {
+  std::vector<Vec3> at;
+  for (const MeasuringPoints& set : sets) at.insert(at.end(), set.at.begin(), set.at.end());
+  return at;
+}
+
+void requireWithin(std::span<const MeasuringPoints> sets, const PatchMesh& mesh) {
+  for (const MeasuringPoints& set : sets) {
+    if (isBeyond(set, mesh)) refuseSet(set, "lie beyond the room");
+  }
+}
+
+void refuseSet(const MeasuringPoints& set, const char* where) {
+  throw InputError(
+      fmt::format("{}: all of its {} points {}; check the height and the unit of the "
+                  "scene (metres here)",
+                  set.name, countText(set.size()), where));
 }
 
 }  // namespace radiosity::cli

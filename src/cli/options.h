@@ -56,6 +56,8 @@ void addLightmapOptions(CLI::App& app, Request& r);
 void addElementOptions(CLI::App& app, Request& r);
 void addFinalGatherOption(CLI::App& app, Request& r);
 void addVisibleOnlyOption(CLI::App& app, Request& r);
+/// The ends of false colours.
+void addRangeOption(CLI::App& app, Request& r, const char* group);
 /// Options for the quantity to draw, of the stages with a matrix, and its colours.
 void addShowOptions(CLI::App& app, Request& r);
 

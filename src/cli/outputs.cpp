@@ -85,12 +85,12 @@ Output lightmapOutput(const std::string& path) {
   return {path, Format::lightmap};
 }
 
-/// The table of --patch-table.
-Output patchTableOutput(const std::string& path) {
+/// The table of --patch-table or --point-table.
+Output tableOutput(const std::string& path, const char* option, Format format) {
   if (lowerExtension(path) != ".csv") {
-    throw InputError(path + ": --patch-table writes .csv; end the name in it");
+    throw InputError(fmt::format("{}: {} writes .csv; end the name in it", path, option));
   }
-  return {path, Format::patch_table};
+  return {path, format};
 }
 
 /// A file that the run reads: what it is, and its path.
@@ -147,12 +147,17 @@ void requireOwnReport(const Request& request, const std::vector<Output>& outputs
 std::vector<Output> parseOutputs(const Request& request) {
   std::vector<Output> outputs;
   std::vector<Output> asked;
-  asked.reserve(request.outputs.size() + 2);
+  asked.reserve(request.outputs.size() + 3);
   for (const std::string& path : request.outputs) {
     asked.push_back({path, formatOf(path, request.command)});
   }
   if (!request.lightmap.empty()) asked.push_back(lightmapOutput(request.lightmap));
-  if (!request.patch_table.empty()) asked.push_back(patchTableOutput(request.patch_table));
+  if (!request.patch_table.empty()) {
+    asked.push_back(tableOutput(request.patch_table, "--patch-table", Format::patch_table));
+  }
+  if (!request.point_table.empty()) {
+    asked.push_back(tableOutput(request.point_table, "--point-table", Format::point_table));
+  }
   for (const Output& output : asked) {
     const std::string& path = output.path;
     for (const Output& other : outputs) {
@@ -173,7 +178,8 @@ std::vector<Output> parseOutputs(const Request& request) {
 }
 
 void requireNoFileOfScene(const Request& request) {
-  std::vector<std::string> paths = {request.lightmap, request.patch_table, request.report};
+  std::vector<std::string> paths = {request.lightmap, request.patch_table, request.point_table,
+                                    request.report};
   // Results files are looked into for what can be reused, and are no files of scenes.
   std::ranges::copy_if(request.outputs, std::back_inserter(paths), [&](const std::string& path) {
     return formatOf(path, request.command) != Format::results;

@@ -33,7 +33,8 @@ enum class Format {
   lightmap,
   illuminance,
   surface_table,
-  patch_table
+  patch_table,
+  point_table
 };
 
 struct Output {
@@ -41,7 +42,7 @@ struct Output {
   Format format;
 };
 
-/// The files of -o for this subcommand, and those of --lightmap and --patch-table. Errors:
+/// The files of -o for this subcommand, and those of --lightmap and tables. Errors:
 /// InputError for an extension that it cannot write (with the list of those that it can), the same
 /// file twice, the scene file itself, or an HDF5 file of another program in place of results.
 std::vector<Output> parseOutputs(const Request& request);

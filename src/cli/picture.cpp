@@ -153,7 +153,8 @@ void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& l
 }  // namespace
 
 double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
-                  const Image& radiance, const Picture& picture, OutputSet& files) {
+                  const Image& radiance, const Picture& picture, OutputSet& files,
+                  std::span<const ImageLayer> layers) {
   const double ev = exposureOf(session.request, mesh, light, radiance, picture);
   if (session.request.exposure == "auto") warnOfDarkness(session.report, mesh, light, radiance);
   session.report.number("exposure_ev", "exposure", ev,
@@ -164,8 +165,10 @@ double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& l
                 metadata.emplace_back("exposure_ev", fmt::format("{}", ev));
                 writeImage(temporary, exposed(radiance, ev), false, metadata);
               });
-  files.write(Format::exr, "radiance, W/m^2/sr, linear", [&](const std::string& temporary) {
-    writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"));
+  std::string names;
+  for (const ImageLayer& layer : layers) names += (names.empty() ? "; layers " : ", ") + layer.name;
+  files.write(Format::exr, "radiance, W/m^2/sr, linear" + names, [&](const std::string& temporary) {
+    writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"), layers);
   });
   if (files.has(Format::glb) && session.request.lightmap.empty()) {
     writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);

@@ -39,8 +39,10 @@ Metadata metadataOf(const Picture& picture, const std::string& quantity, const s
 
 /// Writes a picture's radiance to the .png and .exr among `files`, and the light of elements, or
 /// else of patches, to the .glb (without --lightmap). Reports the exposure and returns it.
+/// `layers`: of the .exr.
 double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
-                  const Image& radiance, const Picture& picture, OutputSet& files);
+                  const Image& radiance, const Picture& picture, OutputSet& files,
+                  std::span<const ImageLayer> layers = {});
 
 /// Writes the .glb among `files` as a lit mesh, and reports its number of triangles.
 void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& light,

@@ -5,6 +5,7 @@
 
 #include "base/luminance.h"
 #include "cli/options.h"
+#include "radiosity/light.h"
 
 namespace radiosity::cli {
 
@@ -65,13 +66,25 @@ void addVisibleOnlyOption(CLI::App& app, Request& r) {
       ->group("Elements");
 }
 
+void addRangeOption(CLI::App& app, Request& r, const char* group) {
+  add(app, group, "--range", r.range, "LOW,HIGH",
+      "Ends of the false colours, in the unit shown (default: of the values in view)");
+}
+
 void addShowOptions(CLI::App& app, Request& r) {
   add(app, "Picture", "--show", r.show, "QUANTITY",
       fmt::format(
-          "False colour with a legend: radiosity or irradiance (W/m^2, Rec. 709 luminance weights "
-          "{} R + {} G + {} B), form-factor:PATCH (F from patch number PATCH, from 0, to each "
-          "patch), row-sum (how much of each patch's view ends on fronts)",
-          kLuminanceOfRed, kLuminanceOfGreen, kLuminanceOfBlue));
+          "False colours with a legend. Of the picture's light, with lines at round numbers: "
+          "luminance (cd/m^2), illuminance (lx, on surfaces as they face) or radiance (W/m^2/sr). "
+          "Of patches, as solved: radiosity or irradiance (W/m^2), form-factor:PATCH (F from patch "
+          "number PATCH, from 0, to each patch), row-sum (how much of each patch's view ends on "
+          "fronts). Colours count by luminance, {} R + {} G + {} B (Rec. 709), {:g} lm/W",
+          kLuminanceOfRed, kLuminanceOfGreen, kLuminanceOfBlue, kLumensPerWatt));
+  addRangeOption(app, r, "Picture");
+  app.add_flag("--layers", r.layers,
+               "The .exr has more channels: depth, normal, patch, surface, albedo, direct and "
+               "indirect light, with --final-gather also its error")
+      ->group("Picture");
 }
 
 }  // namespace radiosity::cli

@@ -191,6 +191,7 @@ void PipelineReport::summarize(const Pipeline& pipeline, const StageEvent& event
       return summarizeFactors(report_, made(results.factors), mesh, stepDetail(Command::factors));
     case Stage::solution:
       return summarizeSolution(report_, made(results.solution), made(results.factors), mesh,
+                               results.materials && arePhotometric(results.materials->lights),
                                options.solve, detail(Command::solve));
     case Stage::gather:
       return summarizeGathered(report_, made(results.gathered), mesh, options.gather,

@@ -1,4 +1,4 @@
-// Options of the points that `illuminance` measures at.
+// Options of the points that `illuminance` and `heat` measure at.
 #include <CLI/CLI.hpp>
 
 #include "cli/options.h"
@@ -35,7 +35,6 @@ void addPointOptions(CLI::App& app, Request& r) {
             "which they are counter-clockwise");
   addPoints(app, r, "--points", PointsAsked::Kind::points, "FILE.csv",
             "Points from a table: x,y,z in metres and, where they do not face up, nx,ny,nz");
-  addOptionsOf<IlluminanceOptions>(app, r, "Points");
 }
 
 }  // namespace radiosity::cli

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include "base/figure_text.h"
@@ -12,84 +10,14 @@
 #include "cli/light_mix.h"
 #include "cli/lightmap.h"
 #include "cli/picture.h"
+#include "cli/show.h"
 #include "cli/summaries.h"
-#include "cli/words.h"
 #include "radiosity/pipeline.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
 
 namespace {
-
-/// The quantity of --show; empty: the lit scene itself.
-struct Show {
-  std::optional<Quantity> quantity;
-  std::size_t patch = 0;
-
-  bool needsLight() const {
-    return !quantity || *quantity == Quantity::radiosity || *quantity == Quantity::irradiance;
-  }
-};
-
-Show parseShow(const std::string& text) {
-  if (text.empty()) return {};
-  if (text == "radiosity") return {Quantity::radiosity};
-  if (text == "irradiance") return {Quantity::irradiance};
-  if (text == "row-sum") return {Quantity::row_sum};
-  const std::string prefix = "form-factor:";
-  if (text.starts_with(prefix)) {
-    std::size_t patch = 0;
-    const char* last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data() + prefix.size(), last, patch);
-    if (error == std::errc() && end == last) return {Quantity::form_factor, patch};
-    throw InputError(
-        fmt::format("--show: '{}' needs a patch number from 0, e.g. form-factor:12", text));
-  }
-  const std::string known[] = {"radiosity", "irradiance", "form-factor:PATCH", "row-sum"};
-  throw InputError(
-      fmt::format("--show: '{}' is not one of radiosity, irradiance, form-factor:PATCH, row-sum{}",
-                  text, suggestion(text, known)));
-}
-
-void requirePatch(const Show& show, const PatchMesh& mesh) {
-  if (show.quantity != Quantity::form_factor || show.patch < mesh.size()) return;
-  throw InputError(fmt::format("--show: there is no patch {}; the mesh has patches 0 to {}",
-                               show.patch, mesh.size() - 1));
-}
-
-/// Reports the place of the patch whose form factors are drawn.
-void describePatch(Report& report, const PatchMesh& mesh, const Show& show) {
-  const Vec3 c = mesh.centroid[show.patch];
-  const double centroid[] = {c.x, c.y, c.z};
-  report.text("patch_surface", "patch lies on", mesh.surface_names[mesh.surface[show.patch]]);
-  report.bands("patch_centroid_m", "patch centroid", centroid, "m");
-}
-
-void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, const Show& show,
-                  Quantity quantity, OutputSet& files) {
-  const PatchMesh& mesh = pipeline.mesh().mesh;
-  const ScalarField field = pipeline.field(quantity, show.patch);
-  const FalseColour& legend = field.legend;
-  const auto [low, high] = std::minmax_element(field.values.begin(), field.values.end());
-  session.report.text("quantity", "shown",
-                      legend.unit.empty() ? legend.title : legend.title + ", " + legend.unit);
-  if (quantity == Quantity::form_factor) describePatch(session.report, mesh, show);
-  session.report.number("lowest", "lowest of all patches", *low, legend.unit);
-  session.report.number("highest", "highest of all patches", *high, legend.unit);
-  files.write(Format::png, legend.title, [&](const std::string& temporary) {
-    writeImage(temporary,
-               renderFalseColour(mesh, field.values, legend, picture.camera, picture.options,
-                                 session.progress),
-               true, metadataOf(picture, legend.title, legend.unit));
-  });
-  files.write(Format::exr, legend.title + " in each channel", [&](const std::string& temporary) {
-    std::vector<double> grey;
-    grey.reserve(3 * field.values.size());
-    for (const double value : field.values) grey.insert(grey.end(), 3, value);
-    writeImage(temporary, render(mesh, grey, picture.camera, picture.options, session.progress),
-               false, metadataOf(picture, legend.title, legend.unit));
-  });
-}
 
 /// The light that the picture shows: of elements or at points, unless patches were asked for.
 /// `mix`: none, the solution.
@@ -132,15 +60,16 @@ void announceGather(Session& session, const PatchMesh& mesh, const SurfaceLight&
   session.report.notes({&note, 1});
 }
 
+/// `parts`: is filled unless it is null.
 Image radianceOfPicture(Session& session, Pipeline& pipeline, const SurfaceLight& light,
-                        const Picture& picture) {
+                        const Picture& picture, PictureParts* parts) {
   const PatchMesh& mesh = pipeline.mesh().mesh;
   if (!light.points) {
-    return renderRadiance(mesh, light, picture.camera, picture.options, session.progress);
+    return renderRadiance(mesh, light, picture.camera, picture.options, session.progress, parts);
   }
   announceGather(session, mesh, light, picture);
   PixelGather gathered =
-      gatherRadiance(mesh, light, picture.camera, picture.options, {}, session.progress);
+      gatherRadiance(mesh, light, picture.camera, picture.options, {}, session.progress, parts);
   summarizeFinalGather(session.report, light.points->report(), gathered.report, pipeline.factors());
   return std::move(gathered.radiance);
 }
@@ -170,9 +99,51 @@ void checkOutputs(const OutputSet& files, const Show& show) {
   if (!lit && !files.has(Format::png) && !files.has(Format::exr)) {
     throw InputError("render: name the picture with -o, e.g. -o picture.png (or .exr, .glb)");
   }
-  if (lit && show.quantity) {
+  if (lit && (show.quantity || show.light)) {
     throw InputError(files.path(Format::glb) +
                      ": a lit mesh holds the radiosity only; use .png or .exr with --show");
+  }
+}
+
+/// Refuses options of pictures in false colours, and of layers, that have nothing to do.
+void checkShown(const Request& request, const Show& show, const ElementUse& elements,
+                const OutputSet& files) {
+  parseRange(request.range);
+  const bool shows = show.quantity || show.light;
+  if (!request.range.empty() && !(shows && files.has(Format::png))) {
+    throw InputError(
+        "--range: is of false colours; add --show QUANTITY and a .png, or leave it out");
+  }
+  if (!request.layers) return;
+  if (!files.has(Format::exr)) {
+    throw InputError("--layers: are channels of an .exr; name one with -o FILE.exr");
+  }
+  if (shows) throw InputError("--layers: are of the lit picture; leave out --show");
+  if (!elements.shown) {
+    throw InputError(fmt::format(
+        "--layers: patches do not tell direct from indirect light, elements do; leave out {}",
+        request.flat ? "--flat" : "--elements off"));
+  }
+}
+
+/// Draws the light as it leaves surfaces or falls on them, and writes it.
+void drawPicture(Session& session, Pipeline& pipeline, const SurfaceLight& light,
+                 const Picture& picture, const Show& show, OutputSet& files) {
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  PictureParts parts;
+  PictureParts* wanted = session.request.layers ? &parts : nullptr;
+  const Image radiance = radianceOfPicture(session, pipeline, light, picture, wanted);
+  if (show.light) {
+    drawLight(session, mesh, radiance, pipeline.bands(), picture, *show.light, files);
+    return;
+  }
+  std::vector<ImageLayer> layers;
+  if (wanted != nullptr) {
+    layers = pictureLayers(mesh, picture.camera, picture.options, std::move(parts));
+  }
+  const double ev = writeLight(session, mesh, light, radiance, picture, files, layers);
+  if (!session.request.lightmap.empty()) {
+    writeLightmap(session, pipeline.scene(), mesh, light, ev, files);
   }
 }
 
@@ -185,6 +156,7 @@ int runRender(Session& session) {
   checkOutputs(files, show);
   checkFinalGather(request, show, files);
   const ElementUse elements = elementUse(request, files);
+  checkShown(request, show, elements, files);
   checkLightmap(request, elements, files);
   checkMix(request, files);
   Run run(session, files.path(Format::results));
@@ -217,15 +189,15 @@ int runRender(Session& session) {
   framePicture(picture, mesh, factors.report.closed, reflected);
   SurfaceLight light;
   if (!show.quantity) light = litSurfaces(session, pipeline, picture, elements, mix);
+  if (show.light && show.light->falling) {
+    const Solution& solution = mix ? mix->solution : pipeline.solution();
+    light = fallingLight(std::move(light), solution.irradiance, solution.bands);
+  }
   reportPicture(session.report, picture);
   if (show.quantity) {
-    drawQuantity(session, pipeline, picture, show, *show.quantity, files);
+    drawQuantity(session, pipeline, picture, *show.quantity, show.patch, files);
   } else {
-    const Image radiance = radianceOfPicture(session, pipeline, light, picture);
-    const double ev = writeLight(session, mesh, light, radiance, picture, files);
-    if (!request.lightmap.empty()) {
-      writeLightmap(session, pipeline.scene(), mesh, light, ev, files);
-    }
+    drawPicture(session, pipeline, light, picture, show, files);
   }
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);

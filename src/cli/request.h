@@ -49,6 +49,7 @@ struct Request {
   std::string thermal;  ///< a table of conditions
   std::vector<std::string> conditions;
   std::string patch_table;  ///< the .csv; empty: none
+  std::string point_table;  ///< likewise
 
   std::string a_is;  ///< radiosity, radiance or srgb8; empty: that of the file
   std::string b_is;
@@ -58,7 +59,7 @@ struct Request {
   std::string areas;  ///< a file with areas of the rows of a matrix
   std::string rows;   ///< a file with their reflectance and emission
 
-  std::vector<PointsAsked> points;  ///< of `illuminance`
+  std::vector<PointsAsked> points;  ///< of `illuminance` and `heat`
 
   std::string camera;
   std::string exposure = "auto";
@@ -68,6 +69,8 @@ struct Request {
   bool visible_only = false;
   bool flat = false;
   std::string show;
+  std::string range;  ///< of false colours, "LOW,HIGH"; empty: automatic
+  bool layers = false;
 
   int threads = 0;
   double time_limit = kNoTimeLimit;  ///< seconds

@@ -33,7 +33,7 @@ int solveMatrixFile(Session& session, OutputSet& files) {
   const SolveOptions options = request.apply(SolveOptions());
   const Solution solution = solve(factors, materials.reflectance, materials.emission,
                                   materials.bands, options, session.progress);
-  summarizeSolution(session.report, solution, factors, PatchMesh(), options, Detail::full);
+  summarizeSolution(session.report, solution, factors, PatchMesh(), false, options, Detail::full);
   if (!solution.radiosity.empty()) {
     files.write(Format::light_csv, "light by row", [&](const std::string& temporary) {
       writeLightCsv(temporary, file.factors.names, factors.matrix->area(), solution);

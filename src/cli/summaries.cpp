@@ -253,6 +253,14 @@ void energyFigures(Report& report, const EnergyAccount& e) {
   report.bands("imbalance_W", "imbalance", e.imbalance, shareOf(e.imbalance, e));
 }
 
+/// The same in lumens, as far as the eye's light goes.
+void photometricFigures(Report& report, const EnergyAccount& e) {
+  report.number("incoming_lm", "coming in, as light",
+                photometricOf(e.emitted) + photometricOf(e.from_sky), "lm");
+  report.number("absorbed_lm", "  absorbed", photometricOf(e.absorbed), "lm");
+  report.number("to_sky_lm", "  left to the sky", photometricOf(e.to_sky), "lm");
+}
+
 /// Warns of surfaces whose backs take more than 0.1% of the light.
 void warnOfBacks(Report& report, const EnergyAccount& e,
                  const std::vector<double>& backs_by_surface, const PatchMesh& mesh) {
@@ -305,7 +313,8 @@ void solverLines(Report& report, const SolveSummary& s, const SolveOptions& opti
 }  // namespace
 
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
-                       const PatchMesh& mesh, const SolveOptions& options, Detail detail) {
+                       const PatchMesh& mesh, bool photometric, const SolveOptions& options,
+                       Detail detail) {
   const SolveSummary& s = solution.summary;
   if (detail == Detail::brief) report.line("", oneLine(s.message));
   {
@@ -317,7 +326,9 @@ void summarizeSolution(Report& report, const Solution& solution, const FormFacto
     lines.after("error_bound", [&] { boundLine(report, s.error_bound); });
     lines.after("residual_history", [&] { report.series("residual_history", s.residual_history); });
     lines.after("energy", [&] {
-      if (!s.energy.emitted.empty()) energyFigures(report, s.energy);  // empty if singular
+      if (s.energy.emitted.empty()) return;  // singular
+      energyFigures(report, s.energy);
+      if (photometric && isPhotometric(solution.bands)) photometricFigures(report, s.energy);
     });
     s.describe(lines, s);
     usableLine(report, s.usable(), factors);

@@ -31,8 +31,10 @@ void summarizeFactors(Report& report, const FormFactors& factors, const PatchMes
 void boundLine(Report& report, const std::optional<double>& bound);
 /// "usable: yes", or what that depends on.
 void usableLine(Report& report, bool usable, const FormFactors& factors);
+/// `photometric`: whether the lamps are (arePhotometric()).
 void summarizeSolution(Report& report, const Solution& solution, const FormFactors& factors,
-                       const PatchMesh& mesh, const SolveOptions& options, Detail detail);
+                       const PatchMesh& mesh, bool photometric, const SolveOptions& options,
+                       Detail detail);
 /// The summary also names the larger error: that of elements or that of the matrix.
 void summarizeElements(Report& report, const Elements& elements, const FormFactors& factors);
 /// `sources`: the report of the sources of light at points.

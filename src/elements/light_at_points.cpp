@@ -74,7 +74,8 @@ int LightAtPoints::bands() const { return int(inside_->bands); }
 const ElementRoots& LightAtPoints::roots() const { return inside_->sources.surface().roots; }
 const ElementReport& LightAtPoints::report() const { return inside_->sources.report(); }
 
-double LightAtPoints::add(std::size_t root, const Vec3& at, int rays, std::span<double> sum) const {
+double LightAtPoints::add(std::size_t root, const Vec3& at, int rays, std::span<double> direct,
+                          std::span<double> indirect) const {
   const LightSources& sources = inside_->sources;
   const Vec2 place = sources.lookup().place(root, at);
   const SurfacePoint point = inside_->pointAt(root, at, place);
@@ -83,16 +84,17 @@ double LightAtPoints::add(std::size_t root, const Vec3& at, int rays, std::span<
     const Index leaf = sources.lookup().leafAt(sources.direct(), root, place);
     const ElementLights* lights = leaf == kNone ? nullptr : sources.directLights()[leaf].get();
     if (lights == nullptr || lights->kind != ElementLights::Kind::dark) {
-      noise += emitters->irradiance(point, lights, sum);
+      noise += emitters->irradiance(point, lights, direct);
     }
   }
-  thread_local std::vector<double> indirect;
-  indirect.assign(sum.size(), 0.0);
+  const std::size_t bands = indirect.size();
+  thread_local std::vector<double> gathered;
+  gathered.assign(bands, 0.0);
   const auto which = std::size_t(std::countr_zero(unsigned(rays / kFewestRays)));
-  const double of_rays = inside_->rays[which]->light.irradiance(point, nullptr, indirect);
+  const double of_rays = inside_->rays[which]->light.irradiance(point, nullptr, gathered);
   const double* patch =
-      sources.indirectOfPatches().data() + sources.surface().roots.patch[root] * sum.size();
-  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += of_rays < 0 ? patch[b] : indirect[b];
+      sources.indirectOfPatches().data() + sources.surface().roots.patch[root] * bands;
+  for (std::size_t b = 0; b < bands; ++b) indirect[b] += of_rays < 0 ? patch[b] : gathered[b];
   return noise + std::max(0.0, of_rays);
 }
 

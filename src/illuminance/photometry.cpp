@@ -1,22 +1,9 @@
 // Lux, and what follows from light at points.
-#include <fmt/format.h>
-
 #include <numbers>
 
-#include "base/luminance.h"
 #include "radiosity/illuminance.h"
 
 namespace radiosity {
-
-double illuminanceOf(std::span<const double> irradiance) {
-  if (irradiance.size() != 3 && irradiance.size() != 1) {
-    throw InputError(fmt::format(
-        "illuminance: lux are of three bands (linear Rec. 709) or of one (grey), and there are {}; "
-        "take irradiance by band, W/m^2, and weigh it",
-        irradiance.size()));
-  }
-  return kLumensPerWatt * brightnessOf(irradiance);
-}
 
 std::span<const double> PointLightValues::directOf(std::size_t point, Measured what) const {
   const auto width = std::size_t(bands);
@@ -29,11 +16,11 @@ std::span<const double> PointLightValues::indirectOf(std::size_t point, Measured
 }
 
 double PointLightValues::directLux(std::size_t point, Measured what) const {
-  return illuminanceOf(directOf(point, what));
+  return photometricOf(directOf(point, what));
 }
 
 double PointLightValues::indirectLux(std::size_t point, Measured what) const {
-  return illuminanceOf(indirectOf(point, what));
+  return photometricOf(indirectOf(point, what));
 }
 
 double PointLightValues::lux(std::size_t point, Measured what) const {

@@ -6,11 +6,11 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "base/luminance.h"
 #include "base/srgb.h"
 #include "radiosity/illuminance.h"
 #include "render/bitmap_text.h"
 #include "render/colour_map.h"
+#include "render/isolines.h"
 #include "render/legend.h"
 
 namespace radiosity {
@@ -29,18 +29,7 @@ constexpr float kPaper = 1;
 constexpr float kBody = 0.62F;
 constexpr float kBlack = 0;
 
-/// About so many lines.
-constexpr double kMostLines = 10;
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-
-/// The smallest of 1, 2, 5 x 10^n that is `least` or more.
-double roundStep(double least) {
-  const double decade = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * decade >= least * (1 - 1e-9)) return factor * decade;
-  }
-  return 10 * decade;
-}
 
 std::string valueText(double lux) {
   if (lux >= 100) return fmt::format("{:.0f}", lux);
@@ -62,7 +51,7 @@ std::string wayText(const Vec3& way) {
 class Plan {
  public:
   Plan(const MeasuringPoints& points, const MeasuringPoints::Grid& grid,
-       const PointLightValues& light, std::size_t first)
+       const PointLightValues& light, std::size_t first, double low, double high)
       : grid_(grid), values_(grid_.columns * grid_.rows, kNoValue) {
     bodies_.assign(values_.size(), 0);
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -82,15 +71,21 @@ class Plan {
     cell_v_ = scale * grid_.step_v;
     width_ = std::max(1, int(std::lround(double(grid_.columns) * cell_u_)));
     height_ = std::max(1, int(std::lround(double(grid_.rows) * cell_v_)));
-    if (high_ > low_) line_step_ = roundStep((high_ - low_) / kMostLines);
+    if (!(high_ >= low_)) return;
+    range_ = {low_, high_};
+    if (low < high) {
+      range_ = {low, high};
+      range_.below = low_ < low;
+      range_.above = high_ > high;
+    }
+    line_step_ = isolineStep(range_);
   }
 
   int width() const { return width_; }
   int height() const { return height_; }
   double lineStep() const { return line_step_; }  ///< lx; 0: no lines
   std::optional<ColourRange> range() const {
-    if (!(high_ >= low_)) return std::nullopt;
-    return ColourRange{low_, high_};
+    return high_ >= low_ ? std::optional(range_) : std::nullopt;
   }
 
   /// Draws it with its top left at a place of the picture.
@@ -108,7 +103,6 @@ class Plan {
     int left, top, right, bottom;
   };
   void drawColours(Image& image, const Pixels& part) const;
-  void drawLines(Image& image) const;
   void drawValues(Image& image) const;
   double shownAt(int x, int y) const {
     return shown_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
@@ -126,6 +120,7 @@ class Plan {
   double cell_v_ = 1;
   int width_ = 1;
   int height_ = 1;
+  ColourRange range_;
   double line_step_ = 0;
   std::vector<double> shown_;  ///< of pixels; NaN: none
   int left_ = 0;               ///< in the picture
@@ -158,7 +153,6 @@ double Plan::valueAt(int x, int y) const {
 }
 
 void Plan::drawColours(Image& image, const Pixels& part) const {
-  const ColourRange range{low_, high_};
   for (int y = std::max(part.top, 0); y < std::min(part.bottom, height_); ++y) {
     for (int x = std::max(part.left, 0); x < std::min(part.right, width_); ++x) {
       const double value = shownAt(x, y);
@@ -168,26 +162,9 @@ void Plan::drawColours(Image& image, const Pixels& part) const {
       }
       float* p = image.rgba.data() +
                  (std::size_t(top_ + y) * std::size_t(image.width) + std::size_t(left_ + x)) * 4;
-      const Vec3 colour = map_.at(range.position(value));
+      const Vec3 colour = map_.at(range_.position(value));
       for (int b = 0; b < 3; ++b) p[b] = float(srgbFromLinear(colour[b]));
       p[3] = 1;
-    }
-  }
-}
-
-/// A pixel is on a line if its value and that of a neighbour are on different sides of a multiple
-/// of the step.
-void Plan::drawLines(Image& image) const {
-  if (!(line_step_ > 0)) return;
-  const auto level = [&](int x, int y) { return std::floor(shownAt(x, y) / line_step_); };
-  for (int y = 0; y + 1 < height_; ++y) {
-    for (int x = 0; x + 1 < width_; ++x) {
-      const double here = level(x, y);
-      const double right = level(x + 1, y);
-      const double below = level(x, y + 1);
-      const bool crosses =
-          (!std::isnan(right) && right != here) || (!std::isnan(below) && below != here);
-      if (!std::isnan(here) && crosses) fillGrey(image, left_ + x, top_ + y, 2, 2, kBlack);
     }
   }
 }
@@ -196,7 +173,6 @@ void Plan::drawLines(Image& image) const {
 /// behind them.
 void Plan::drawValues(Image& image) const {
   if (!(high_ >= low_)) return;
-  const ColourRange range{low_, high_};
   int widest = std::max(textWidth(valueText(low_), 1), textWidth(valueText(high_), 1));
   if (low_ < 100 && high_ >= 10) widest = std::max(widest, textWidth("99.9", 1));
   const int scale = cell_u_ >= (widest + 3) * kTextScale ? kTextScale : 1;
@@ -212,9 +188,7 @@ void Plan::drawValues(Image& image) const {
           int(std::lround(height_ - (double(row) + 0.5) * cell_v_)) - kCapHeight * scale / 2;
       drawColours(image, {x - scale, y - scale, x + textWidth(text, scale) + scale,
                           y + (kCapHeight + 1) * scale});
-      constexpr double kBright = 0.2;
-      const bool dark = luminanceOf(map_.at(range.position(value))) < kBright;
-      drawText(image, left_ + x, top_ + y, scale, text, dark ? kPaper : kBlack);
+      drawText(image, left_ + x, top_ + y, scale, text, inkOver(map_.at(range_.position(value))));
     }
   }
 }
@@ -227,13 +201,13 @@ void Plan::draw(Image& image, int left, int top) {
     for (int x = 0; x < width_; ++x) shown_.push_back(valueAt(x, y));
   }
   drawColours(image, {0, 0, width_, height_});
-  drawLines(image);
+  drawIsolines(image, left, top, {width_, height_, shown_, {}}, range_, line_step_, map_,
+               kTextScale, false);
   drawValues(image);
 }
 
 std::vector<std::string> headingOf(const MeasuringPoints& points, const MeasuringPoints::Grid& grid,
-                                   const PointLightValues& light, std::size_t first,
-                                   double line_step) {
+                                   const PointLightValues& light, std::size_t first) {
   const IlluminanceSummary s = summaryOf(points, light, first);
   std::vector<std::string> lines{points.name};
   if (s.points > 0) {
@@ -244,7 +218,6 @@ std::vector<std::string> headingOf(const MeasuringPoints& points, const Measurin
   lines.push_back(fmt::format("{} points, {:.3g} x {:.3g} m apart; right is {}, up {}",
                               points.size(), grid.step_u, grid.step_v, wayText(grid.u),
                               wayText(grid.v)));
-  if (line_step > 0) lines.push_back(fmt::format("lines every {:g} lx", line_step));
   if (s.inside > 0) lines.push_back(fmt::format("grey: {} points in bodies", s.inside));
   return lines;
 }
@@ -258,19 +231,19 @@ Image paper(int width, int height) {
 }  // namespace
 
 Image illuminancePlan(const MeasuringPoints& points, const PointLightValues& light,
-                      std::size_t first) {
+                      std::size_t first, double low, double high) {
   if (!points.grid) {
     throw InputError(points.name + ": its points are no grid, of which a plan could be drawn");
   }
-  Plan plan(points, *points.grid, light, first);
-  const std::vector<std::string> heading =
-      headingOf(points, *points.grid, light, first, plan.lineStep());
+  Plan plan(points, *points.grid, light, first, low, high);
+  const std::vector<std::string> heading = headingOf(points, *points.grid, light, first);
   int width = std::max(plan.width(), kNarrowestPlan);
   for (const std::string& line : heading) width = std::max(width, textWidth(line, kTextScale));
   width += 2 * kEdge;
   const int top = kEdge + int(heading.size()) * kLineHeight + kEdge / 2;
   const int above_legend = top + plan.height() + kEdge;
-  const Legend legend({.title = "illuminance", .unit = "lx"}, width, 2 * above_legend);
+  const Legend legend({.title = "illuminance", .unit = "lx"}, width, 2 * above_legend,
+                      plan.lineStep());
   Image image = paper(width, above_legend + legend.height());
   for (std::size_t k = 0; k < heading.size(); ++k) {
     drawText(image, kEdge, kEdge + int(k) * kLineHeight, kTextScale, heading[k], kBlack);

@@ -137,14 +137,16 @@ class OpenImageIoCodec final : public ImageCodec {
                       const std::vector<unsigned char>& bytes) {
     OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes.data()), bytes.size());
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, nullptr, &memory);
-    std::vector<float> samples(std::size_t(image.width) * std::size_t(image.height) * 4);
-    return input && input->read_image(0, 0, 0, 4, OIIO::TypeDesc::FLOAT, samples.data());
+    const std::size_t channels = image.channels.size();
+    std::vector<float> samples(std::size_t(image.width) * std::size_t(image.height) * channels);
+    return input &&
+           input->read_image(0, 0, 0, int(channels), OIIO::TypeDesc::FLOAT, samples.data());
   }
 
   EncodedImage encode(const std::string& path, const ImageToEncode& image) const override {
-    OIIO::ImageSpec spec(image.width, image.height, 4,
+    OIIO::ImageSpec spec(image.width, image.height, int(image.channels.size()),
                          image.floating ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-    spec.channelnames = {"R", "G", "B", "A"};
+    spec.channelnames = image.channels;
     spec.alpha_channel = 3;
     spec.attribute("oiio:ColorSpace", image.colour_space);
     if (image.floating) spec.attribute("compression", "zip");

@@ -8,16 +8,6 @@ namespace radiosity {
 
 namespace {
 
-/// One number a patch, of any bands.
-std::vector<double> brightnessOfEach(std::span<const double> values, int bands) {
-  const auto width = std::size_t(bands);
-  std::vector<double> out(values.size() / width);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = brightnessOf(values.subspan(width * i, width));
-  }
-  return out;
-}
-
 ScalarField brightnessField(const char* title, std::span<const double> values, int bands) {
   return {brightnessOfEach(values, bands), {title + brightnessText(bands), "W/m^2"}};
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "base/luminance.h"
 #include "radiosity/base.h"
 
 namespace radiosity {
@@ -19,5 +20,11 @@ class ColourMap {
   static constexpr int kSteps = 256;
   std::array<Vec3, kSteps + 1> table_;  ///< linear RGB, so that at() takes no powers
 };
+
+/// Display value of text and lines over a colour: black, or white over a dark one.
+inline float inkOver(const Vec3& linear_rgb) {
+  constexpr double kBright = 0.2;
+  return luminanceOf(linear_rgb) < kBright ? 1.0F : 0.0F;
+}
 
 }  // namespace radiosity

@@ -6,11 +6,9 @@
 #include <vector>
 
 #include "base/luminance.h"
-#include "base/parallel.h"
 #include "radiosity/render.h"
-#include "render/item_buffer.h"
 #include "render/percentile.h"
-#include "render/view.h"
+#include "render/seen_points.h"
 
 namespace radiosity {
 
@@ -72,21 +70,10 @@ std::vector<std::uint8_t> lampPixels(const PatchMesh& mesh, const SurfaceLight& 
     const double* b = light.patches.data() + 3 * i;
     lamp[i] = luminanceOf(Vec3(b[0], b[1], b[2])) > 2 * light.reflected[i];
   }
-  const ItemBuffer items(mesh, makeView(camera, options.width, options.height), 1,
-                         options.show_backs);
-  std::vector<std::uint8_t> pixels(std::size_t(options.width) * std::size_t(options.height));
-  parallelFor(std::size_t(items.tileCount()), 1, [&](std::size_t tile) {
-    thread_local TileItems seen;
-    items.resolve(int(tile), seen);
-    for (int y = seen.y; y < seen.y + seen.height; ++y) {
-      for (int x = seen.x; x < seen.x + seen.width; ++x) {
-        const Index piece = seen.piece[seen.at(x, y, 0)];
-        if (piece == kNone || items.seenFromBehind(piece)) continue;
-        pixels[std::size_t(y) * std::size_t(options.width) + std::size_t(x)] =
-            lamp[items.patchOf(piece)];
-      }
-    }
-  });
+  std::vector<std::uint8_t> pixels;
+  for (const SeenPoint& seen : middlesOfPixels(mesh, camera, options)) {
+    pixels.push_back(seen.patch == kNone || seen.back ? 0 : lamp[seen.patch]);
+  }
   return pixels;
 }
 

@@ -1,14 +1,18 @@
 // Draws a scalar field in false colour, with a legend below.
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "base/srgb.h"
 #include "render/colour_map.h"
+#include "render/isolines.h"
 #include "render/legend.h"
 #include "render/percentile.h"
 #include "render/samples.h"
+#include "render/seen_points.h"
 
 namespace radiosity {
 namespace {
@@ -28,11 +32,11 @@ class InViewPixel {
  public:
   explicit InViewPixel(InView& view) : view_(view) {}
   void begin() { first_ = true; }
-  void sample(Seen seen, const std::array<double, 3>& value) {
+  void sample(Seen seen, const Shade& shade) {
     if (seen != Seen::front) return;
-    view_.low = std::min(view_.low, value[0]);
-    view_.high = std::max(view_.high, value[0]);
-    if (first_) view_.values.push_back(value[0]);
+    view_.low = std::min(view_.low, shade.value[0]);
+    view_.high = std::max(view_.high, shade.value[0]);
+    if (first_) view_.values.push_back(shade.value[0]);
     first_ = false;
   }
   void end(int /*x*/, int /*y*/) {}
@@ -53,9 +57,9 @@ class ColourPixel {
     count_ = 0;
     sum_ = Vec3(0.0);
   }
-  void sample(Seen seen, const std::array<double, 3>& value) {
+  void sample(Seen seen, const Shade& shade) {
     ++count_;
-    sum_ += seen == Seen::front  ? map_.at(range_.position(value[0]))
+    sum_ += seen == Seen::front  ? map_.at(range_.position(shade.value[0]))
             : seen == Seen::back ? Vec3(kBack)
                                  : Vec3(kMiss);
   }
@@ -123,22 +127,26 @@ Image renderFalseColour(const PatchMesh& mesh, std::span<const double> values,
   return image;
 }
 
-Image falseColourPixels(int width, int height, std::span<const double> values,
-                        const FalseColour& legend) {
-  if (width < 1 || height < 1 || values.size() != std::size_t(width) * std::size_t(height)) {
-    throw InputError("falseColourPixels: as many values as pixels are needed");
-  }
+namespace {
+
+std::optional<ColourRange> rangeOfPixels(const FalseColour& asked, std::span<const double> values) {
   std::vector<InView> seen(1);
-  InViewPixel range_pixel(seen[0]);
+  InViewPixel pixel(seen[0]);
   for (const double value : values) {
     if (std::isnan(value)) continue;
-    range_pixel.begin();
-    range_pixel.sample(Seen::front, {value, 0, 0});
+    pixel.begin();
+    pixel.sample(Seen::front, {.value = {value, 0, 0}});
   }
-  const std::optional<ColourRange> range = rangeInView(legend, seen);
+  return rangeInView(asked, seen);
+}
+
+/// `line_step`: 0: without lines.
+Image drawPixels(const PixelValues& pixels, const FalseColour& text,
+                 const std::optional<ColourRange>& range, double line_step) {
+  const auto [width, height, values, joined] = pixels;
   // The strip is added below the picture and may be as high: Legend takes half of the height at
   // most.
-  const Legend strip(legend, width, 2 * height);
+  const Legend strip(text, width, 2 * height, line_step);
   Image image{width, height + strip.height(), {}};
   image.rgba.assign(std::size_t(image.width) * std::size_t(image.height) * 4, 1.0F);
   const ColourMap map;
@@ -146,14 +154,80 @@ Image falseColourPixels(int width, int height, std::span<const double> values,
   ColourPixel pixel(image, map, shown);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const double value = values[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+      const double value = values[pixels.index(x, y)];
       pixel.begin();
-      pixel.sample(std::isnan(value) ? Seen::nothing : Seen::front, {value, 0, 0});
+      pixel.sample(std::isnan(value) ? Seen::nothing : Seen::front, {.value = {value, 0, 0}});
       pixel.end(x, y);
     }
   }
+  drawIsolines(image, 0, 0, pixels, shown, line_step, map, strip.scale(), true);
   strip.draw(image, map, range);
   return image;
+}
+
+}  // namespace
+
+Image falseColourPixels(int width, int height, std::span<const double> values,
+                        const FalseColour& legend) {
+  if (width < 1 || height < 1 || values.size() != std::size_t(width) * std::size_t(height)) {
+    throw InputError("falseColourPixels: as many values as pixels are needed");
+  }
+  return drawPixels({width, height, values, {}}, legend, rangeOfPixels(legend, values), 0);
+}
+
+namespace {
+
+/// Pixels of one smooth piece of a surface. Those that an edge may pass through are of none: what
+/// they show is a mean of both sides.
+class SmoothPixels {
+ public:
+  SmoothPixels(const PatchMesh& mesh, const Camera& camera, const RenderOptions& options)
+      : mesh_(mesh),
+        bend_(std::cos(options.crease * std::numbers::pi / 180)),
+        seen_(middlesOfPixels(mesh, camera, options)),
+        inner_(seen_.size(), 1) {
+    const auto width = std::size_t(options.width);
+    const auto compare = [&](std::size_t a, std::size_t b) {
+      if (!areSmooth(a, b)) inner_[a] = inner_[b] = 0;
+    };
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      if ((k + 1) % width != 0) compare(k, k + 1);
+      if (k + width < seen_.size()) compare(k, k + width);
+    }
+  }
+  std::size_t size() const { return seen_.size(); }
+  bool joined(std::size_t a, std::size_t b) const {
+    return inner_[a] != 0 && inner_[b] != 0 && areSmooth(a, b);
+  }
+
+ private:
+  bool areSmooth(std::size_t a, std::size_t b) const {
+    const Index i = seen_[a].patch;
+    const Index j = seen_[b].patch;
+    return i == j || (i != kNone && j != kNone && mesh_.surface[i] == mesh_.surface[j] &&
+                      glm::dot(mesh_.normal[i], mesh_.normal[j]) >= bend_);
+  }
+
+  const PatchMesh& mesh_;
+  double bend_;
+  std::vector<SeenPoint> seen_;
+  std::vector<std::uint8_t> inner_;
+};
+
+}  // namespace
+
+Image falseColourPicture(const PatchMesh& mesh, std::span<const double> values,
+                         const FalseColour& legend, const Camera& camera,
+                         const RenderOptions& options) {
+  const SmoothPixels smooth(mesh, camera, options);
+  if (values.size() != smooth.size()) {
+    throw InputError("falseColourPicture: as many values as pixels are needed");
+  }
+  const auto joined = [&](std::size_t a, std::size_t b) { return smooth.joined(a, b); };
+  std::optional<ColourRange> range = rangeOfPixels(legend, values);
+  const double step = range ? isolineStep(*range) : 0;
+  if (range && step > 0 && !(legend.low < legend.high)) range = roundedOut(*range, step);
+  return drawPixels({options.width, options.height, values, joined}, legend, range, step);
 }
 
 }  // namespace radiosity

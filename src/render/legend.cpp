@@ -42,9 +42,10 @@ std::vector<std::string> wrapped(const std::string& text, int width, int scale) 
   return lines;
 }
 
-std::string titleOf(const FalseColour& text) {
-  if (text.unit.empty()) return text.title;
-  return text.title.empty() ? "[" + text.unit + "]" : text.title + " [" + text.unit + "]";
+std::string titleOf(const FalseColour& text, double line_step) {
+  std::string title = text.title;
+  if (!text.unit.empty()) title += (title.empty() ? "[" : " [") + text.unit + "]";
+  return line_step > 0 ? fmt::format("{}, lines every {:g}", title, line_step) : title;
 }
 
 /// A number under the bar.
@@ -67,7 +68,11 @@ std::string number(double value, const ColourRange& range) {
   const double size = std::max(std::abs(range.low), std::abs(range.high));
   const double lost = range.high > range.low ? std::log10(size / (range.high - range.low)) : 2;
   const int digits = std::clamp(4 + int(std::floor(lost)), 4, 17);
-  return fmt::format("{:.{}g}", value, digits);
+  const std::string text = fmt::format("{:.{}g}", value, digits);
+  constexpr double kPowersFrom = 1e7;
+  return std::abs(value) < kPowersFrom && text.find("e+") != text.npos
+             ? fmt::format("{:.0f}", std::stod(text))
+             : text;
 }
 
 /// The multiples of `step` strictly between the ends; those without room beside the end numbers are
@@ -111,12 +116,13 @@ std::vector<Tick> bestInnerTicks(const ColourRange& range, const Tick& first, co
 
 }  // namespace
 
-Legend::Legend(const FalseColour& text, int width, int height)
+Legend::Legend(const FalseColour& text, int width, int height, double line_step)
     // The font grows with the root of the picture: 1 at 200 pixels, 2 at 512, 4 at 1920.
     : width_(width),
+      line_step_(line_step),
       scale_(std::max(1, int(std::lround(std::sqrt(width / 128.0))))),
       margin_(4 * scale_),
-      lines_(wrapped(titleOf(text), width - 2 * margin_, scale_)) {
+      lines_(wrapped(titleOf(text, line_step), width - 2 * margin_, scale_)) {
   const int rows =
       int(lines_.size()) * (kGlyphHeight + kGap) + kBarHeight + kTickHeight + kGap + kGlyphHeight;
   const int needed = rows * scale_ + 2 * margin_;
@@ -151,6 +157,19 @@ void Legend::drawBar(Image& image, int top, const ColourMap& map, const ColourRa
       for (int b = 0; b < 3; ++b) p[b] = float(srgbFromLinear(colour[b]));
     }
   }
+  if (!(line_step_ > 0)) return;
+  for (double k = std::ceil(range.low / line_step_); k * line_step_ <= range.high; ++k) {
+    drawBarLine(image, top, map, range, k * line_step_);
+  }
+}
+
+/// The line in the picture at that value, at the place of its colour.
+void Legend::drawBarLine(Image& image, int top, const ColourMap& map, const ColourRange& range,
+                         double level) const {
+  const double t = range.position(level);
+  const int x = margin_ + int(std::lround(t * (width_ - 2 * margin_ - 1))) - scale_ / 2;
+  if (x <= margin_ || x + scale_ >= width_ - margin_) return;
+  fillGrey(image, x, top, scale_, kBarHeight * scale_, inkOver(map.at(t)));
 }
 
 void Legend::drawTicks(Image& image, int top, const ColourRange& range) const {

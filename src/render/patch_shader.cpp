@@ -13,6 +13,7 @@ PatchShader::PatchShader(const PatchMesh& mesh, const ItemBuffer& items, const P
 void PatchShader::setPiece(Index piece) {
   const Index patch = items_.patchOf(piece);
   corners_ = 0;
+  patch_ = patch;
   setRoot(patch, piece);
   if (root_ != kNone) return;
   if (field_.corners.empty()) {
@@ -42,30 +43,29 @@ void PatchShader::setRoot(Index patch, Index piece) {
   const Elements* elements = field_.roots->elements;
   if (elements != nullptr && elements->indirect.elements[root].corners == 0) return;
   root_ = root;
-  patch_ = patch;
   const PointMaterials* materials = field_.roots->materials;
   varies_ = materials != nullptr && materials->varies(patch);
   normal_ = mesh_.normal[patch];
   height_ = glm::dot(normal_, mesh_.vertices[roots.corner[root][0]] - items_.view().eye);
 }
 
-void PatchShader::irradiance(const Vec3& at, std::span<double> sum) {
+void PatchShader::addIrradiance(const Vec3& at, std::span<double> direct,
+                                std::span<double> indirect, Shade& shade) {
   const ShadedRoots& shaded = *field_.roots;
   if (shaded.points == nullptr) {
     const Vec2 place = shaded.lookup->place(root_, at);
-    shaded.lookup->add(shaded.elements->direct, root_, place, sum);
-    shaded.lookup->add(shaded.elements->indirect, root_, place, sum);
+    shaded.lookup->add(shaded.elements->direct, root_, place, direct);
+    shaded.lookup->add(shaded.elements->indirect, root_, place, indirect);
     return;
   }
   const int rays = int(std::bit_floor(unsigned(
       std::clamp(shaded.rays / samples_, LightAtPoints::kFewestRays, LightAtPoints::kMostRays))));
-  const double noise = shaded.points->add(root_, at, rays, sum);
-  double light = 0;
-  for (const double value : sum) light += value;
+  shade.noise_square = shaded.points->add(root_, at, rays, direct, indirect);
+  for (std::size_t b = 0; b < direct.size(); ++b) shade.light += direct[b] + indirect[b];
   ++sums_.points;
   sums_.rays += rays;
-  sums_.noise_square += noise / (samples_ * samples_);
-  sums_.light_square += light * light / samples_;
+  sums_.noise_square += shade.noise_square / (samples_ * samples_);
+  sums_.light_square += shade.light * shade.light / samples_;
 }
 
 /// Samples are as far apart on the patch as in the picture, at its depth; more where it is seen
@@ -77,29 +77,30 @@ PointMaterials::Values PatchShader::materialAt(const Vec3& at, double depth) con
   return field_.roots->materials->at(patch_, at, across / std::sqrt(std::max(facing, 0.1)));
 }
 
-std::array<double, 3> PatchShader::rootAt(double x, double y) {
+Shade PatchShader::rootAt(double x, double y) {
   const ShadedRoots& shaded = *field_.roots;
   const Vec3 ray = items_.view().rayThrough(x, y);
   const double depth = height_ / glm::dot(normal_, ray);
   const Vec3 at = items_.view().eye + ray * depth;
-  std::array<double, 3> light{};
+  Shade shade;
+  std::array<double, 3> direct{};
+  std::array<double, 3> indirect{};
   const auto bands = std::size_t(shaded.bands);
-  irradiance(at, std::span(light).first(bands));
-  if (varies_) {
-    const PointMaterials::Values own = materialAt(at, depth);
-    for (int b = 0; b < 3; ++b) {
-      const double emission = shaded.emission[patch_ * bands + std::size_t(b)];
-      light[b] =
-          shaded.factor * (emission * own.emission_factor[b] + own.reflectance[b] * light[b]);
-    }
-    return light;
-  }
+  addIrradiance(at, std::span(direct).first(bands), std::span(indirect).first(bands), shade);
+  const PointMaterials::Values own = varies_ ? materialAt(at, depth) : PointMaterials::Values();
   for (std::size_t b = 0; b < bands; ++b) {
     const std::size_t k = patch_ * bands + b;
-    light[b] = shaded.factor * (shaded.emission[k] + shaded.reflectance[k] * light[b]);
+    const double reflectance = varies_ ? own.reflectance[int(b)] : shaded.reflectance[k];
+    const double emission =
+        varies_ ? shaded.emission[k] * own.emission_factor[int(b)] : shaded.emission[k];
+    shade.albedo[b] = reflectance;
+    shade.direct[b] = shaded.factor * (emission + reflectance * direct[b]);
+    shade.value[b] = shaded.factor * (emission + reflectance * (direct[b] + indirect[b]));
   }
-  if (bands == 1) light[1] = light[2] = light[0];
-  return light;
+  if (bands == 1) {
+    for (auto* grey : {&shade.value, &shade.direct, &shade.albedo}) grey->fill((*grey)[0]);
+  }
+  return shade;
 }
 
 /// Fills the corner areas; false unless the patch is a convex quadrilateral.
@@ -150,8 +151,23 @@ void PatchShader::setTriangle(Index patch, Index piece) {
   }
 }
 
-std::array<double, 3> PatchShader::at(double x, double y) {
-  if (root_ != kNone) return rootAt(x, y);
+Shade PatchShader::at(double x, double y) { return root_ != kNone ? rootAt(x, y) : patchAt(x, y); }
+
+/// Of a patch without light on its roots all counts as indirect, less what it emits.
+Shade PatchShader::patchAt(double x, double y) const {
+  Shade shade;
+  shade.value = interpolated(x, y);
+  if (field_.roots == nullptr) return shade;
+  const ShadedRoots& shaded = *field_.roots;
+  for (std::size_t b = 0; b < 3; ++b) {
+    const std::size_t k = patch_ * std::size_t(shaded.bands) + (shaded.bands == 1 ? 0 : b);
+    shade.albedo[b] = shaded.reflectance[k];
+    shade.direct[b] = shaded.factor * shaded.emission[k];
+  }
+  return shade;
+}
+
+std::array<double, 3> PatchShader::interpolated(double x, double y) const {
   std::array<double, 3> value = base_;
   if (corners_ == 0) return value;
   std::array<double, 4> a{};

@@ -40,6 +40,16 @@ struct ShadedRoots {
   const PointMaterials* materials = nullptr;
 };
 
+/// What a sample sees.
+struct Shade {
+  std::array<double, 3> value{};  ///< of the field
+  // Of light on roots:
+  std::array<double, 3> direct{};  ///< the part of `value` that is emission and direct light
+  std::array<double, 3> albedo{};  ///< reflectance
+  double light = 0;                ///< irradiance, summed over the bands
+  double noise_square = 0;         ///< the square of its standard error
+};
+
 /// A field over the patches: constant on each, interpolated from values at the corners, or taken
 /// from elements.
 struct PatchField {
@@ -72,8 +82,8 @@ class PatchShader {
   PointSums sums() const { return sums_; }
   /// Sets the piece, and so the patch, of the next samples.
   void setPiece(Index piece);
-  /// `field.bands` values at pixel position (x, y), inside the piece.
-  std::array<double, 3> at(double x, double y);
+  /// At pixel position (x, y), inside the piece; `value` has `field.bands` values.
+  Shade at(double x, double y);
 
  private:
   void setConvexQuad(Index patch);
@@ -81,8 +91,11 @@ class PatchShader {
   void setTriangle(Index patch, Index piece);
 
   void setRoot(Index patch, Index piece);
-  std::array<double, 3> rootAt(double x, double y);
-  void irradiance(const Vec3& at, std::span<double> sum);
+  Shade rootAt(double x, double y);
+  Shade patchAt(double x, double y) const;
+  std::array<double, 3> interpolated(double x, double y) const;
+  void addIrradiance(const Vec3& at, std::span<double> direct, std::span<double> indirect,
+                     Shade& shade);
   PointMaterials::Values materialAt(const Vec3& at, double depth) const;
 
   const PatchMesh& mesh_;

@@ -30,7 +30,7 @@ class Gathering {
     report_.rays_a_pixel = raysOf(gather);
   }
 
-  Image draw(int every, Progress& progress) {
+  Image draw(int every, Progress& progress, PictureParts* parts = nullptr) {
     const Stopwatch watch;
     const std::vector<double> radiance = radianceOf(light_.patches);
     PatchField field = makeField(mesh_, radiance, 3, options_);
@@ -46,7 +46,7 @@ class Gathering {
     shaded.tiles = tiles;
     field.roots = &shaded;
     Image image = drawField(mesh_, field, items, options_,
-                            every > 1 ? "time of the picture" : "picture", progress);
+                            every > 1 ? "time of the picture" : "picture", progress, parts);
     sumUp(tiles);
     if (every == 1) report_.seconds = watch.seconds();
     return image;
@@ -87,10 +87,10 @@ void PixelGatherOptions::validate() const { requireRanges(*this); }
 
 PixelGather gatherRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                            const RenderOptions& options, const PixelGatherOptions& gather,
-                           Progress& progress) {
+                           Progress& progress, PictureParts* parts) {
   Gathering gathering(mesh, light, camera, options, gather);
   PixelGather out;
-  out.radiance = gathering.draw(1, progress);
+  out.radiance = gathering.draw(1, progress, parts);
   out.report = gathering.report();
   return out;
 }

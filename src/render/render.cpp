@@ -16,52 +16,94 @@
 namespace radiosity {
 namespace {
 
+using Colour = std::array<double, 3>;
+
+/// The parts of a pixel, while its samples come.
+class PixelParts {
+ public:
+  explicit PixelParts(PictureParts* parts) : parts_(parts) {}
+
+  void begin() { sums_ = {}; }
+  void add(const Shade& shade) {
+    for (int b = 0; b < 3; ++b) {
+      sums_.direct[b] += shade.direct[b];
+      sums_.albedo[b] += shade.albedo[b];
+    }
+    sums_.light += shade.light;
+    sums_.noise_square += shade.noise_square;
+  }
+  /// `mean`: the colour of the pixel, over `hits` samples.
+  void end(std::size_t pixel, const Colour& mean, int hits) {
+    if (parts_ == nullptr) return;
+    for (std::size_t b = 0; b < 3; ++b) {
+      const double direct = sums_.direct[b] / hits;
+      parts_->direct[3 * pixel + b] = float(direct);
+      parts_->indirect[3 * pixel + b] = float(mean[b] - direct);
+      parts_->albedo[3 * pixel + b] = float(sums_.albedo[b] / hits);
+    }
+    if (!parts_->error.empty() && sums_.light > 0) {
+      parts_->error[pixel] = float(std::sqrt(sums_.noise_square) / sums_.light);
+    }
+  }
+
+ private:
+  PictureParts* parts_;
+  Shade sums_;
+};
+
 /// Colour: the mean over the samples that hit a surface or a background. Alpha: the share of these
 /// samples. The mean is that of differences to the first hit, so that a constant field keeps its
 /// bits.
 class RgbPixel {
  public:
-  RgbPixel(Image& image, const std::optional<Vec3>& background) : image_(image) {
-    if (background) background_ = {background->x, background->y, background->z};
+  RgbPixel(Image& image, const std::optional<Vec3>& background, PictureParts* parts)
+      : image_(image), parts_(parts) {
+    if (!background) return;
+    has_background_ = true;
+    background_.value = {background->x, background->y, background->z};
+    background_.direct = background_.value;
   }
 
   void begin() {
     hits_ = samples_ = 0;
     sum_ = {};
+    parts_.begin();
   }
-  void sample(Seen seen, const std::array<double, 3>& value) {
+  void sample(Seen seen, const Shade& shade) {
     ++samples_;
-    std::array<double, 3> colour{};
-    if (seen == Seen::front) {
-      colour = value;
-    } else if (seen == Seen::nothing) {
-      if (!background_) return;
-      colour = *background_;
-    }
-    if (hits_++ == 0) first_ = colour;
-    for (int b = 0; b < 3; ++b) sum_[b] += colour[b] - first_[b];
+    if (seen == Seen::nothing && !has_background_) return;
+    const Shade shown = seen == Seen::front ? shade : seen == Seen::nothing ? background_ : Shade();
+    if (hits_++ == 0) first_ = shown.value;
+    for (int b = 0; b < 3; ++b) sum_[b] += shown.value[b] - first_[b];
+    parts_.add(shown);
   }
   void end(int x, int y) {
     if (hits_ == 0) return;
-    float* out = image_.rgba.data() + (std::size_t(y) * image_.width + x) * 4;
-    for (int b = 0; b < 3; ++b) out[b] = float(first_[b] + sum_[b] / hits_);
+    Colour mean{};
+    for (int b = 0; b < 3; ++b) mean[b] = first_[b] + sum_[b] / hits_;
+    const std::size_t pixel = std::size_t(y) * image_.width + x;
+    float* out = image_.rgba.data() + pixel * 4;
+    for (int b = 0; b < 3; ++b) out[b] = float(mean[b]);
     out[3] = float(hits_) / float(samples_);
+    parts_.end(pixel, mean, hits_);
   }
 
  private:
   Image& image_;
-  std::optional<std::array<double, 3>> background_;
+  PixelParts parts_;
+  Shade background_;
+  bool has_background_ = false;
   int hits_ = 0;
   int samples_ = 0;
-  std::array<double, 3> first_{};
-  std::array<double, 3> sum_{};
+  Colour first_{};
+  Colour sum_{};
 };
 
 Image draw(const PatchMesh& mesh, const PatchField& field, const Camera& camera,
-           const RenderOptions& options, Progress& progress) {
+           const RenderOptions& options, Progress& progress, PictureParts* parts = nullptr) {
   const View view = makeView(camera, options.width, options.height);
   const ItemBuffer items(mesh, view, options.samples, options.show_backs);
-  return drawField(mesh, field, items, options, "picture", progress);
+  return drawField(mesh, field, items, options, "picture", progress, parts);
 }
 
 void requireColours(const PatchMesh& mesh, std::span<const double> values) {
@@ -87,12 +129,20 @@ void checkCorners(const PatchMesh& mesh, std::span<const double> corners) {
 }  // namespace
 
 Image drawField(const PatchMesh& mesh, const PatchField& field, const ItemBuffer& items,
-                const RenderOptions& options, const std::string& stage, Progress& progress) {
+                const RenderOptions& options, const std::string& stage, Progress& progress,
+                PictureParts* parts) {
   Image image{options.width, options.height, {}};
-  image.rgba.assign(std::size_t(image.width) * image.height * 4, 0.0f);
+  const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
+  image.rgba.assign(pixels * 4, 0.0f);
+  if (parts != nullptr) {
+    for (auto* part : {&parts->direct, &parts->indirect, &parts->albedo})
+      part->assign(3 * pixels, 0);
+    const bool has_error = field.roots != nullptr && field.roots->points != nullptr;
+    parts->error.assign(has_error ? pixels : 0, 0);
+  }
   progress.begin(stage, items.tileCount());
   forSamples(
-      mesh, items, field, [&](std::size_t) { return RgbPixel(image, options.background); },
+      mesh, items, field, [&](std::size_t) { return RgbPixel(image, options.background, parts); },
       progress);
   progress.end();
   return image;
@@ -213,8 +263,18 @@ std::vector<std::uint8_t> visiblePatches(const PatchMesh& mesh, const Camera& ca
   return {seen.begin(), seen.end()};
 }
 
+SurfaceLight fallingLight(SurfaceLight light, std::span<const double> irradiance, int bands) {
+  light.patches = rgbOf(irradiance, bands);
+  light.corners.clear();
+  light.sky = Vec3(0.0);
+  light.reflectance.assign(irradiance.size(), 1.0);
+  light.emission.assign(irradiance.size(), 0.0);
+  light.materials.reset();
+  return light;
+}
+
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
-                     const RenderOptions& options, Progress& progress) {
+                     const RenderOptions& options, Progress& progress, PictureParts* parts) {
   RenderOptions with_sky = options;
   if (light.sky != Vec3(0.0)) with_sky.background = light.sky;
   if (light.elements && options.smooth) {
@@ -229,7 +289,12 @@ Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Cam
     shaded.lookup = &lookup;
     shaded.materials = light.materials.get();
     field.roots = &shaded;
-    return draw(mesh, field, camera, with_sky, progress);
+    return draw(mesh, field, camera, with_sky, progress, parts);
+  }
+  if (parts != nullptr) {
+    throw InputError(
+        "layers: patches do not tell direct from indirect light; draw the light of elements, "
+        "smoothly, or gather it at every pixel");
   }
   return renderRadiance(mesh, light.patches, light.corners, camera, with_sky, progress);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/printable.h"
 #include "radiosity/results.h"
 #include "results/archive.h"
 #include "scene/lights/light_text.h"
@@ -68,16 +69,26 @@ template <class Archive>
 void describeLights(Archive& a, Described<Archive, std::vector<Light>>& lights, std::size_t bands) {
   std::vector<double> sky = skyRadiance(lights);
   std::vector<std::string> others = otherLights(lights);
+  std::vector<std::string> photometric;
+  for (const Light& light : lights) {
+    if (light.photometric) photometric.push_back(light.name);
+  }
   a.numbers("sky", sky, bands);
   a.later("lights", others);
+  a.later("photometric_lights", photometric);
   if constexpr (Archive::kReading) {
     try {
       lights = lightsOf(sky, others, int(bands));
-      for (const Light& light : lights) {
+      for (Light& light : lights) {
         if (!light.isAllRound()) light.validate();
+        light.photometric = std::erase(photometric, light.name) > 0;
       }
     } catch (const InputError& error) {
       a.fail("lights", error.what());
+    }
+    if (!photometric.empty()) {
+      a.fail("photometric_lights",
+             "names '" + printable(photometric.front()) + "', which is no light");
     }
   }
 }

@@ -71,6 +71,27 @@ void writeHeatPatches(const std::string& path, const HeatSolution& heat, const P
   file.commit();
 }
 
+void writeRadiantTemperatures(const std::string& path, std::span<const MeasuringPoints> sets,
+                              const RadiantTemperatures& temperatures) {
+  CheckedFile file(path);
+  std::string header = "x_m,y_m,z_m,standing_K,seated_K";
+  for (const char* face : kRadiantFaceNames) header += fmt::format(",plane_{}_K", face);
+  file.write(header + ",surfaces_seen,points\n");
+  std::size_t row = 0;
+  for (const MeasuringPoints& set : sets) {
+    for (std::size_t k = 0; k < set.size(); ++k, ++row) {
+      const Vec3& at = set.at[k];
+      std::string line = fmt::format("{},{},{},{},{}", at.x, at.y, at.z, temperatures.standing[row],
+                                     temperatures.seated[row]);
+      for (std::size_t face = 0; face < kRadiantFaces; ++face) {
+        line += fmt::format(",{}", temperatures.plane[row * kRadiantFaces + face]);
+      }
+      file.write(fmt::format("{},{},{}\n", line, temperatures.surfaces[row], csvField(set.name)));
+    }
+  }
+  file.commit();
+}
+
 void writeHeatRows(const std::string& path, const HeatSolution& heat,
                    std::span<const std::string> names, std::span<const double> area) {
   CheckedFile file(path);

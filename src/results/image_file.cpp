@@ -53,6 +53,49 @@ std::vector<float> associated(const Image& image) {
   return pixels;
 }
 
+/// The layers' channels after those of the picture, each pixel's together.
+std::vector<float> withLayers(const std::vector<float>& pixels, std::span<const ImageLayer> layers,
+                              std::size_t channels) {
+  const std::size_t count = pixels.size() / 4;
+  std::vector<float> all(count * channels);
+  std::size_t first = 0;
+  const auto put = [&](const std::vector<float>& values, std::size_t width) {
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      all[k / width * channels + first + k % width] = values[k];
+    }
+    first += width;
+  };
+  put(pixels, 4);
+  for (const ImageLayer& layer : layers) put(layer.values, layer.values.size() / count);
+  return all;
+}
+
+void checkLayers(const std::string& path, const Image& image, std::span<const ImageLayer> layers) {
+  for (const ImageLayer& layer : layers) {
+    const std::size_t needed =
+        image.rgba.size() / 4 * std::max<std::size_t>(1, layer.channels.size());
+    if (layer.values.size() != needed) {
+      throw InputError(fmt::format("{}: layer {} needs {} values, not {}", path, layer.name, needed,
+                                   layer.values.size()));
+    }
+    if (std::ranges::any_of(layer.values, [](float value) { return std::isnan(value); })) {
+      throw RunError(
+          fmt::format("{}: layer {} has a value that is not a number", path, layer.name));
+    }
+  }
+}
+
+/// Adds the names of their channels, and their units as attributes.
+void describeLayers(std::span<const ImageLayer> layers, std::vector<std::string>& channels,
+                    std::vector<std::pair<std::string, std::string>>& attributes) {
+  for (const ImageLayer& layer : layers) {
+    if (layer.channels.empty()) channels.push_back(layer.name);
+    for (const std::string& channel : layer.channels)
+      channels.push_back(layer.name + "." + channel);
+    if (!layer.unit.empty()) attributes.emplace_back(layer.name + ".unit", layer.unit);
+  }
+}
+
 /// Colours for PNG, not multiplied by alpha; alpha is linear in both formats.
 std::vector<std::uint8_t> encoded(const Image& image, bool display_referred) {
   std::vector<std::uint8_t> pixels(image.rgba.size());
@@ -86,21 +129,27 @@ DecodedImage readSamples(const std::string& path, double max_image) {
 }  // namespace
 
 void writeImage(const std::string& path, const Image& image, bool display_referred,
-                Metadata metadata) {
+                Metadata metadata, std::span<const ImageLayer> layers) {
   checkImage(path, image);
+  checkLayers(path, image, layers);
   const std::string extension = lowerExtension(path);
+  std::vector<std::pair<std::string, std::string>> attributes(metadata.begin(), metadata.end());
   ImageToEncode file;
   file.width = image.width;
   file.height = image.height;
-  file.metadata = metadata;
+  describeLayers(layers, file.channels, attributes);
+  file.metadata = attributes;
   if (extension == ".exr") {
-    const std::vector<float> pixels = associated(image);
+    const std::vector<float> pixels = withLayers(associated(image), layers, file.channels.size());
     file.floating = true;
     file.multiplied = true;
     file.colour_space = display_referred ? "sRGB" : "Linear";
     file.pixels = pixels.data();
     save(path, file);
   } else if (extension == ".png") {
+    if (!layers.empty()) {
+      throw InputError(path + ": layers are values of .exr; name a file .exr");
+    }
     const std::vector<std::uint8_t> pixels = encoded(image, display_referred);
     file.colour_space = "sRGB";
     file.pixels = pixels.data();

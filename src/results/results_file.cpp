@@ -87,9 +87,19 @@ class StageWriter {
     if (!results_.solution) return;
     group.text("key", results_.solution.key);
     describe(fields, *results_.solution);
+    if (results_.materials) writePhotometric(fields, *results_.materials, *results_.solution);
   }
 
  private:
+  /// For readers of other programs: ours makes these anew.
+  static void writePhotometric(FieldWriter<Sink>& fields, const PatchMaterials& materials,
+                               const Solution& solution) {
+    if (!arePhotometric(materials.lights) || !isPhotometric(solution.bands)) return;
+    const PhotometricRows rows = photometricRows(solution);
+    fields("illuminance", rows.illuminance, "lx");
+    fields("luminance", rows.luminance, "cd/m^2");
+  }
+
   template <class T>
   Sink put(const StageOf<T>& stage, const T& value) {
     Sink group = root_.group(stage.group + suffix_);

@@ -1,3 +1,4 @@
+#include "radiosity/light.h"
 #include "radiosity/vtk.h"
 
 namespace radiosity {
@@ -15,14 +16,20 @@ std::vector<CellField> factorFields(const FormFactors& factors) {
   return fields;
 }
 
-std::vector<CellField> lightFields(const Solution& solution) {
+std::vector<CellField> lightFields(const Solution& solution, bool photometric) {
   std::vector<double> net(solution.radiosity.size());
   for (std::size_t k = 0; k < net.size(); ++k) {
     net[k] = solution.radiosity[k] - solution.irradiance[k];
   }
-  return {{"radiosity", "W/m^2", solution.bands, solution.radiosity},
-          {"irradiance", "W/m^2", solution.bands, solution.irradiance},
-          {"net_flux", "W/m^2", solution.bands, std::move(net)}};
+  std::vector<CellField> fields = {{"radiosity", "W/m^2", solution.bands, solution.radiosity},
+                                   {"irradiance", "W/m^2", solution.bands, solution.irradiance},
+                                   {"net_flux", "W/m^2", solution.bands, std::move(net)}};
+  if (photometric && isPhotometric(solution.bands)) {
+    PhotometricRows rows = photometricRows(solution);
+    fields.push_back({"illuminance", "lx", 1, std::move(rows.illuminance)});
+    fields.push_back({"luminance", "cd/m^2", 1, std::move(rows.luminance)});
+  }
+  return fields;
 }
 
 std::vector<CellField> heatFields(const HeatSolution& heat) {

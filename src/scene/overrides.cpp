@@ -238,9 +238,10 @@ void Overrides::replace(Light light, Up up) {
   const bool had_one = before != scene_.lights.end();
   const LightTraits& traits = light.traits();
   const std::string stands = standText(light, up);
-  note(fmt::format("{}: {} {} -> {} {} {}", light.name, traits.strength,
+  note(fmt::format("{}: {} {} -> {} {}{} {}", light.name, traits.strength,
                    describeBands(had_one ? coloursOf(*before) : Vec3(0.0)),
                    describeBands(coloursOf(light)), traits.unit,
+                   light.photometric ? ", " + photometricText(3) + "," : "",
                    stands.empty() ? traits.from : stands));
   for (std::string& remark : light.remarks()) {
     if (std::ranges::find(scene_.notes, remark, &Note::text) != scene_.notes.end()) continue;
@@ -262,7 +263,9 @@ void Overrides::setLightProperty(const std::string& name, const std::string& pro
   const std::string text = fmt::format("{}{},{}={}", strengthText(light.strength),
                                        light.parametersText(), property, value);
   try {
-    replace(lightOf(light.traits().word, text), scene_.up);
+    Light changed = lightOf(light.traits().word, text);
+    if (property != light.traits().strength) changed.photometric = light.photometric;
+    replace(std::move(changed), scene_.up);
   } catch (const InputError& error) {
     origin.fail(error.what());
   }

@@ -38,7 +38,8 @@ Light& findOrAdd(std::vector<Light>& lights, const Light& like, std::size_t band
     return light.name == like.name && light.kind == like.kind;
   });
   if (same != lights.end()) return *same;
-  return lights.emplace_back(like.name, like.kind, std::vector<double>(bands, 0.0));
+  return lights.emplace_back(like.name, like.kind, std::vector<double>(bands, 0.0),
+                             like.photometric);
 }
 
 /// Materials with the bands of every source side by side.

@@ -207,6 +207,8 @@ class Illuminance(CliTest):
                 (["--points", "none.csv"], ["none.csv: no such file"]),
                 (["--grid", "floor", "-o", "lit.glb"], ["lit.glb: illuminance writes .png"]),
                 (["--points", "bad.csv", "-o", "bad.csv"], ["bad.csv: is the table of --points"]),
+                (["--grid", "floor", "--range", "0,500"], ["--range: is of the plan's colours"]),
+                (["--grid", "floor", "--range", "0;500", "-o", "plan.png"], ["--range: '0;500' is not two"]),
                 (["--grid", "floor", "--ray-tolerance", "0"], ["--ray-tolerance: 0 is out of range"])]:
             with self.subTest(words):
                 self.refuse("illuminance", scene, *words, words=told)

@@ -39,7 +39,7 @@ class PhotometricLamps(CliTest):
         self.assertIn("solution       reused", run.out)
         run = self.run_program("solve", "a.h5", "--set", "Desk.flux=683lm", "--set", "Desk.at=.5,.8,.5")
         self.assertIn("form factors   reused", run.out)
-        self.assertIn("W at 0.5,0.8,0.5, lamp.ies", run.out)
+        self.assertIn("W, 683 lm/W at Y of Rec. 709, at 0.5,0.8,0.5, lamp.ies", run.out)
         np.testing.assert_allclose(self.power("a.h5"), 1, rtol=1e-3)
         (light,) = self.report("info", "a.h5")["scene"]["lights"]
         self.assertEqual([light["kind"], light["stands"], light["file"]],

@@ -275,10 +275,10 @@ TEST(LightAtPoints, WrongArgumentsAreRefused) {
 }
 
 TEST(Illuminance, LumensAreCountedByBands) {
-  EXPECT_DOUBLE_EQ(illuminanceOf(std::vector<double>{1, 1, 1}), 683);
-  EXPECT_DOUBLE_EQ(illuminanceOf(std::vector<double>{0, 1, 0}), 683 * 0.7152);
-  EXPECT_DOUBLE_EQ(illuminanceOf(std::vector<double>{2}), 1366);
-  EXPECT_THROW(illuminanceOf(std::vector<double>{1, 1}), InputError);
+  EXPECT_DOUBLE_EQ(photometricOf(std::vector<double>{1, 1, 1}), 683);
+  EXPECT_DOUBLE_EQ(photometricOf(std::vector<double>{0, 1, 0}), 683 * 0.7152);
+  EXPECT_DOUBLE_EQ(photometricOf(std::vector<double>{2}), 1366);
+  EXPECT_THROW(photometricOf(std::vector<double>{1, 1}), InputError);
 }
 
 TEST(Illuminance, ASummaryHasTheFiguresOfAPlan) {

@@ -214,7 +214,8 @@ TEST(PatchShader, LinearFieldsComeOutExactlyInAnyQuadOrTriangle) {
         if (piece == kNone) continue;
         shader.setPiece(piece);
         // Doubles throughout; an edge function loses up to 1e3 ulps to cancellation.
-        ASSERT_NEAR(shader.at(x + 0.5, y + 0.5)[0], linear(onPlane(view, x + 0.5, y + 0.5)), 1e-11);
+        ASSERT_NEAR(shader.at(x + 0.5, y + 0.5).value[0], linear(onPlane(view, x + 0.5, y + 0.5)),
+                    1e-11);
         ++samples;
       }
     }
@@ -242,7 +243,7 @@ TEST(PatchShader, ASquareIsBilinearWithoutACreaseAlongADiagonal) {
       shader.setPiece(piece);
       const Vec3 p = onPlane(view, x + 0.5, y + 0.5);
       // The same ulps as above.
-      ASSERT_NEAR(shader.at(x + 0.5, y + 0.5)[0], p.x + p.y - 2 * p.x * p.y, 1e-11);
+      ASSERT_NEAR(shader.at(x + 0.5, y + 0.5).value[0], p.x + p.y - 2 * p.x * p.y, 1e-11);
     }
   }
 }

@@ -228,7 +228,8 @@ bool mayBe(const std::string& path, const std::string& damage) {
   if (damage.starts_with("all bits")) return path == "/scene/face_element";
   // As many as there are, or none.
   constexpr const char* kAnyLength[] = {"/residual_history", "/condition_settings",
-                                        "/condition_groups", "/condition_table"};
+                                        "/condition_groups", "/condition_table",
+                                        "/photometric_lights"};
   if (damage.find("row") != std::string::npos && endsWithOneOf(path, kAnyLength)) return true;
   constexpr const char* kOrNone[] = {"/texcoords", "/colours", "/form_factors/error",
                                      "/form_factors/backs_by_surface"};

@@ -40,6 +40,7 @@ inline Scene scene() {
   s.textures.push_back({"two.png", 40, 30, std::vector<float>(40 * 30 * 3, 0.25f), true});
   s.cameras = {{"front", {1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 0.6, 1.5}, {}};
   s.lights = {uniformSky({0.1, 1, 1e9})};
+  s.lights[0].photometric = true;
   s.up = Up::z;
   s.unit = "mm";
   s.notes = {{Severity::loud, "lamp: emits by inheritance"}, {Severity::info, ""}};
@@ -406,8 +407,8 @@ inline auto members(const Camera& s) {
   return std::tie(a, b, c, d, e, f);
 }
 inline auto members(const Light& s) {
-  const auto& [a, b, c] = s;
-  return std::tie(a, b, c);
+  const auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
 }
 inline auto members(const Scene& s) {
   const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = s;

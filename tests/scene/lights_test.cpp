@@ -55,6 +55,15 @@ TEST(Lights, StrengthsComeInSeveralUnits) {
   EXPECT_EQ(lightOf("point,8W/sr").strength, std::vector<double>(3, 8.0));
   EXPECT_EQ(lightOf("sun,68300lx").strength, std::vector<double>(3, 100.0));
   EXPECT_EQ(lightOf("sun").strength, std::vector<double>(3, 1000.0));
+  for (const char* text : {"point,800cd", "point,900lm", "sun,68300lx", "sky,5cd/m^2"}) {
+    const Light light = lightOf(text);
+    EXPECT_TRUE(light.photometric) << text;
+    EXPECT_TRUE(arePhotometric({&light, 1})) << text;
+  }
+  for (const char* text : {"point,8W/sr", "point,9W", "sun", "sky,5", "point,0cd"}) {
+    const Light light = lightOf(text);
+    EXPECT_FALSE(arePhotometric({&light, 1})) << text;
+  }
   // A point spreads its power over 4 pi; rounding of one product.
   EXPECT_NEAR(lightOf("point,900lm").strength[0], 900 / 683.0 / (4 * kPi), 1e-15);
   EXPECT_NEAR(lightOf("point,9W").strength[0], 9 / (4 * kPi), 1e-15);

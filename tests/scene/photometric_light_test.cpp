@@ -236,14 +236,20 @@ TEST_F(PhotometricLights, ChangeByName) {
   applyOverrides(scene, changes);
   EXPECT_NOTE(scene.notes, "lamp.ies: its table gives 628.319 lm, and its lamps 100 lm",
               Severity::warning);
-  EXPECT_NOTE(scene.notes, "ies: flux 0 -> 0.919939 W at 0,0,2, lamp.ies", Severity::info);
+  EXPECT_NOTE(scene.notes,
+              "ies: flux 0 -> 0.919939 W, 683 lm/W at Y of Rec. 709, at 0,0,2, lamp.ies",
+              Severity::info);
   std::filesystem::remove(path("lamp.ies"));
   SceneOverrides others;
   others.set = {"ies.flux=900lm", "ies.at=0,0,3", "ies.turn=20"};
   applyOverrides(scene, others);
   EXPECT_NEAR(scene.lights.back().strength[0], 900 / 683.0, 1e-15);
   EXPECT_EQ(*scene.lights.back().place(), Vec3(0, 0, 3));
+  EXPECT_TRUE(scene.lights.back().photometric);
   validate(scene);
+  others.set = {"ies.flux=2"};
+  applyOverrides(scene, others);
+  EXPECT_FALSE(scene.lights.back().photometric);
 }
 
 TEST_F(PhotometricLights, ThatAreNoneAreRefusedInALine) {

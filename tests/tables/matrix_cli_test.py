@@ -66,10 +66,10 @@ class Matrices(CliTest):
         first, second = self.light("light.csv")
         b1 = 3 / (1 - .5 * .8)
         # The residual of 1e-12 times 3 W/m^2, over 1 - rho.
-        self.assertAlmostEqual(float(first["radiosity"]), b1, delta=1e-11)
-        self.assertAlmostEqual(float(second["radiosity"]), .8 * b1, delta=1e-11)
-        self.assertAlmostEqual(float(first["irradiance"]), .8 * b1, delta=1e-11)
-        self.assertAlmostEqual(float(second["net_flux"]), -.2 * b1, delta=1e-11)
+        self.assertAlmostEqual(float(first["radiosity_W_per_m2"]), b1, delta=1e-11)
+        self.assertAlmostEqual(float(second["radiosity_W_per_m2"]), .8 * b1, delta=1e-11)
+        self.assertAlmostEqual(float(first["irradiance_W_per_m2"]), .8 * b1, delta=1e-11)
+        self.assertAlmostEqual(float(second["net_flux_W_per_m2"]), -.2 * b1, delta=1e-11)
         self.assertEqual(first["area_m2"], "2")
         self.assertAlmostEqual(report["solution"]["emitted_W"][0], 6)
 
@@ -99,7 +99,7 @@ class Matrices(CliTest):
                    f"ceiling/lamp,.2,.2,.2,{5 * pi},{4 * pi},{3 * pi}\n*,.5,.6,.7,0,0,0\n")
         self.run_program("solve", "s.mtx", "--rows", "rows.csv", "--solve-tolerance", "1e-10", "-o",
                          "m.csv")
-        columns = [f"{q}_{b}" for q in ("radiosity", "irradiance", "net_flux") for b in (1, 2, 3)]
+        columns = [f"{q}_{b}_W_per_m2" for q in ("radiosity", "irradiance", "net_flux") for b in (1, 2, 3)]
         of_scene, of_matrix = [numpy.array([[float(row[c]) for c in columns] for row in
                                             self.light(name)]) for name in ("s.csv", "m.csv")]
         # Values are rounded to 32 bits in the .mtx; radiosities are up to 20 W/m^2.

@@ -126,7 +126,7 @@ Light GltfLamps::read(const tinygltf::Node& node, const glm::dmat4& transform,
   lamp.turn = turnTo(lamp, glm::normalize(side));
   std::vector<double> strength = factorsOf(file_, given, what);
   for (double& flux : strength) flux *= lamp.usual();
-  return {"", std::move(lamp), std::move(strength)};
+  return {"", std::move(lamp), std::move(strength), true};
 }
 
 std::vector<std::string> GltfLamps::remarks() const {

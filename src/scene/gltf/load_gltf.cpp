@@ -293,7 +293,7 @@ void Reader::readLight(const tinygltf::Node& node, const Transform& transform) {
   const std::string named = node.name.empty() ? gltf.name : node.name;
   const Vec3 at(transform[3]);
   const Vec3 forward(transform * glm::dvec4(0, 0, -1, 0));
-  Light light{light_names_.make(named.empty() ? gltf.type : named), {}, {1.0, 1.0, 1.0}};
+  Light light{light_names_.make(named.empty() ? gltf.type : named), {}, {1.0, 1.0, 1.0}, true};
   const bool usable = isFinite(at) && isFinite(forward) && glm::length(forward) > 0;
   if (gltf.type == "point") {
     light.kind = PointLight{at, gltf.range};

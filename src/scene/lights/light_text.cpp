@@ -138,6 +138,7 @@ class Reading {
         },
         light_.kind);
     if (usual > 0) light_.strength = {usual};
+    light_.photometric = !light_.fileName().empty();
   }
 
   struct Strength {
@@ -174,7 +175,10 @@ class Reading {
   /// The cone that a power spreads over may be given after it.
   void settleUnit() {
     double each = 1;
-    if (unit_ == light_.traits().photometric || unit_ == "lm") each = 1 / kLumensPerWatt;
+    if (unit_ == light_.traits().photometric || unit_ == "lm") {
+      each = 1 / kLumensPerWatt;
+      light_.photometric = true;
+    }
     if (unit_ == "W" || unit_ == "lm") {
       light_.validate();
       each /= Light{light_.name, light_.kind, {1.0}}.power(0).value_or(1);  // isUnit(): it has one
