@@ -111,7 +111,8 @@ foreach(target IN ITEMS radiosity_cli radiosity_scene radiosity_scene_gltf radio
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()
 # But for what lights send, which all rays ask: by themselves, and after the option above.
-foreach(light IN ITEMS lights lamps sun photometric_light photometry/photometry)
+foreach(light IN ITEMS background lights lamps skies sky_image sun photometric_light
+        photometry/photometry)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/src/scene/lights/${light}.cpp PROPERTIES
     COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_UNITY_BUILD_INCLUSION ON)
 endforeach()

@@ -148,6 +148,8 @@ struct PointLightValues {
   std::vector<double> error;     ///< P: standard error over all light of the point, facing
   /// P, 1: most of what the point sees are black backs of surfaces. It stands in a body.
   std::vector<std::uint8_t> inside;
+  /// Lux of open level ground, where nothing shines but skies without a sun; 0: something does.
+  double open_lux = 0;
   IlluminanceReport report;
 
   std::size_t size() const { return error.size(); }
@@ -157,6 +159,9 @@ struct PointLightValues {
   double lux(std::size_t point, Measured what) const;
   double directLux(std::size_t point, Measured what) const;
   double indirectLux(std::size_t point, Measured what) const;
+  /// What of the light outside arrives, facing, percent; 0 if `open_lux` is 0. It is the daylight
+  /// factor of EN 17037 and CIE 16 under the overcast sky.
+  double daylightFactor(std::size_t point) const;
   /// EN 13201-3: of half an upright cylinder that faces one of the four sides, the integral of
   /// L sin(t) (1 + cos(a)) / pi over all directions, a the angle in plan to that side.
   double semicylindricalLux(std::size_t point, Measured side) const;
@@ -190,9 +195,11 @@ struct IlluminanceSummary {
   double lowest = 0;
   double mean = 0;
   double highest = 0;
-  double direct = 0;    ///< mean
-  double indirect = 0;  ///< mean
-  double cylinder = 0;  ///< mean
+  double direct = 0;                  ///< mean
+  double indirect = 0;                ///< mean
+  double cylinder = 0;                ///< mean
+  double daylight_factor = 0;         ///< mean, percent; 0: there is none
+  double lowest_daylight_factor = 0;  ///< percent
   Vec3 lowest_at{0.0};
   Vec3 highest_at{0.0};
   /// U_0 = lowest / mean and U_d = lowest / highest; 0 in the dark.

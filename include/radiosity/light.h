@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -12,56 +11,12 @@
 #include <vector>
 
 #include "radiosity/base.h"
+#include "radiosity/light_traits.h"
 #include "radiosity/option_line.h"
 #include "radiosity/photometry.h"
+#include "radiosity/sky.h"
 
 namespace [[gnu::visibility("default")]] radiosity {
-
-/// The axis that points up.
-enum class Up { y, z };
-
-/// Lumens a watt: of light whose Y is that of the bands, linear Rec. 709 (CIE 1931, photopic).
-inline constexpr double kLumensPerWatt = 683;
-
-/// Whether so many bands have a photometric value: three (linear Rec. 709), or one, which is grey.
-constexpr bool isPhotometric(int bands) { return bands == 1 || bands == 3; }
-/// The photometric value of a radiometric one a band: lx of irradiance in W/m^2, cd/m^2 of radiance
-/// in W/m^2/sr, lm of W; kLumensPerWatt times luminance, or times the one band. Errors: InputError
-/// unless isPhotometric().
-double photometricOf(std::span<const double> bands);
-/// The same of each row of N * bands values: N.
-std::vector<double> photometricOfEach(std::span<const double> rows, int bands);
-/// The conversion in words: "683 lm/W at Y of Rec. 709".
-std::string photometricText(int bands);
-
-/// The way by which a light reaches a place, unless something stands in it.
-struct LightRay {
-  static constexpr double kOutside = std::numeric_limits<double>::infinity();
-  Vec3 toward{0.0};            ///< unit, from the place to the light
-  double distance = kOutside;  ///< metres; kOutside: the light is beyond the scene
-  double share = 0;            ///< irradiance across the way, over the light's strength
-};
-
-/// What a kind of light is called.
-struct LightTraits {
-  const char* word;         ///< of the command line, Python and files
-  const char* strength;     ///< the quantity that scales it
-  const char* unit;         ///< of the strength
-  const char* photometric;  ///< its unit in photometry; 683 of them are one `unit`
-  const char* from;         ///< where it comes from, in a few words
-  const char* help;         ///< a sentence
-  bool single = false;      ///< a scene has one at most: the word is its name
-  double usual = 0;         ///< strength by default; 0: it must be given
-};
-
-// Parameters that several kinds have.
-void describeAt(auto& list, auto& at) {
-  list({.name = "at", .value = "X,Y,Z", .unit = "m", .help = "Its place"}, at);
-}
-void describeRange(auto& list, auto& range) {
-  list({.name = "range", .value = "METRES", .unit = "m", .help = "Where it ends; 0: nowhere"},
-       range, {.from = 0});
-}
 
 /// The same radiance from every direction in which nothing stands.
 struct UniformSky {
@@ -79,6 +34,7 @@ struct UniformSky {
   static void describe(auto& /*list*/, auto& /*sky*/) {}
 
   double radiance(double radiance) const { return radiance; }
+  std::optional<double> overcast(double radiance) const { return std::numbers::pi * radiance; }
 
   bool operator==(const UniformSky&) const = default;
 };
@@ -151,9 +107,8 @@ struct SpotLight {
   bool operator==(const SpotLight&) const = default;
 };
 
-/// A disc at infinity, in the direction `toward`. Angles, or a place and a time on Earth, replace
-/// the direction (settle()).
-struct Sun {
+/// A disc at infinity, in the direction `toward`.
+struct Sun : SunPlace {
   static constexpr LightTraits kTraits{
       .word = "sun",
       .strength = "irradiance",
@@ -168,36 +123,14 @@ struct Sun {
           "52.5,13.4,2026-06-21T12:00+02:00",
       .single = true,
       .usual = 1000};
-  Vec3 toward{0.0};                 ///< from the scene to it, of any length; 0: it gives no light
-  double diameter = 0.533;          ///< degrees; 0: sharp shadows
-  std::optional<double> elevation;  ///< degrees above the horizon (45 if nothing else is given)
-  std::optional<double> azimuth;    ///< degrees clockwise from north, seen from above (180)
-  double north = 0;                 ///< degrees by which north is turned clockwise
-  double latitude = 0;              ///< degrees north
-  double longitude = 0;             ///< degrees east
-  std::string time;                 ///< "2026-06-21T12:00+02:00", or Z for UTC; empty: none
+  double diameter = 0.533;  ///< degrees; 0: sharp shadows
 
   /// What values are without a name of their own, if one of them is no number.
   static constexpr const char* kUnnamed[] = {"latitude", "longitude", "time"};
   static void describe(auto& list, auto& sun) {
-    list({.name = "toward", .value = "X,Y,Z", .help = "The direction in which it stands"},
-         sun.toward);
+    describePlace(list, sun);
     list({.name = "diameter", .value = "DEGREES", .unit = "degrees", .help = "Of its disc"},
          sun.diameter, {.from = 0, .to = 90});
-    list({.name = "elevation", .value = "DEGREES", .unit = "degrees", .help = "Above the horizon"},
-         sun.elevation, {.from = -90, .to = 90});
-    list({.name = "azimuth", .value = "DEGREES", .unit = "degrees", .help = "Clockwise from north"},
-         sun.azimuth, {.from = -360, .to = 360});
-    list({.name = "north",
-          .value = "DEGREES",
-          .unit = "degrees",
-          .help = "North, clockwise from +y where z is up, from -z where y is"},
-         sun.north, {.from = -360, .to = 360});
-    list({.name = "latitude", .value = "DEGREES", .unit = "degrees", .help = "Of the scene"},
-         sun.latitude, {.from = -90, .to = 90});
-    list({.name = "longitude", .value = "DEGREES", .unit = "degrees", .help = "Of the scene"},
-         sun.longitude, {.from = -180, .to = 180});
-    list({.name = "time", .value = "DATE", .help = "2026-06-21T12:00+02:00, or Z"}, sun.time);
   }
 
   /// u and v choose a point of the disc, alike by area.
@@ -205,10 +138,6 @@ struct Sun {
   LightRay ray(const Vec3& place, double u, double v) const;
   /// The mean of the cosine over the disc; none where the triangle's plane cuts the disc.
   std::optional<double> share(const Vec3& a, const Vec3& b, const Vec3& c) const;
-  /// Takes its direction from the angles, or from place and time, which are none then. Errors:
-  /// InputError if it is below the horizon, for a time that is none, and for a year that is not
-  /// 1950 to 2050.
-  void settle(Up up);
 
   bool operator==(const Sun&) const = default;
 };
@@ -271,26 +200,19 @@ struct PhotometricLight {
   bool operator==(const PhotometricLight&) const = default;
 };
 
-/// Where the sun is seen, with the air's refraction.
-struct SolarPosition {
-  double elevation = 0;  ///< degrees
-  double azimuth = 0;    ///< degrees clockwise from north
-};
-
-/// J. Michalsky, "The Astronomical Almanac's algorithm for approximate solar position (1950-2050)",
-/// Solar Energy 40, 1988: to .01 degrees. `time` as Sun::time. Errors: InputError.
-SolarPosition solarPosition(double latitude, double longitude, const std::string& time);
-
 /// The kinds. Each has
 ///   kTraits
 ///   describe(list, kind)     its parameters beside the strength, a line each (option_line.h)
 ///   operator==
 /// and one of
-///   radiance(strength)       W/m^2/sr: it comes from where nothing stands
+///   radiance(strength)       W/m^2/sr: it comes from where nothing stands, alike all round
+///   dome(strength, whole)    the same by direction (sky.h)
 ///   ray(place, u, v)         it is aimed: the way from a place; u, v in [0, 1)
-/// Any may have kUnnamed and validate(); an aimed one isWide(place) (u and v matter there),
-/// share(a, b, c), power(), usual() (strength by default), remarks() and settle(up).
-using LightKind = std::variant<UniformSky, PointLight, SpotLight, Sun, PhotometricLight>;
+/// Any may have kUnnamed, validate(), usual() (strength by default), remarks() and settle(up); an
+/// aimed one isWide(place) (u and v matter there), share(a, b, c) and power(); one that comes from
+/// where nothing stands overcast(strength), and sky.h says what else.
+using LightKind = std::variant<UniformSky, PointLight, SpotLight, Sun, PhotometricLight, CieSky,
+                               PerezSky, ImageSky>;
 
 struct Light {
   std::string name;
@@ -308,13 +230,18 @@ struct Light {
   /// Those that people give.
   std::vector<std::string> parameterNames() const;
   bool shines() const;  ///< in some band
-  /// Whether it comes from where nothing stands: rays that meet nothing bring its radiance().
+  /// Whether it comes from where nothing stands: rays that meet nothing bring it (Background).
   bool isAllRound() const;
-  /// W/m^2/sr, of one band; 0 of aimed lights.
+  bool isUniform() const;  ///< all round, and alike in all directions
+  /// W/m^2/sr, of one band; 0 of those that are not uniform.
   double radiance(std::size_t band) const;
   /// W/m^2, of one band, of a place of whose view the share `open` meets nothing: pi L times that,
-  /// Lambert's law over a uniform part of the hemisphere. 0 of aimed lights.
+  /// Lambert's law over a uniform part of the hemisphere. 0 of those that are not uniform.
   double fromAround(std::size_t band, double open) const;
+  /// The radiance by direction of one that is all round but not uniform (sky.h); else null.
+  Dome dome(bool whole) const;
+  /// W/m^2, of one band, of open level ground under it; none: it is no sky, or has a sun in it.
+  std::optional<double> overcast(std::size_t band) const;
   /// Of aimed lights; of no share of others.
   LightRay ray(const Vec3& place, double u, double v) const;
   bool isWide(const Vec3& place) const;  ///< there are several ways to the place
@@ -329,7 +256,8 @@ struct Light {
   std::vector<std::string> remarks() const;
   /// Whether it comes from beyond the scene.
   bool isFromOutside() const;
-  /// What depends on the scene that it stands in; readers and applyOverrides() do it.
+  /// What depends on the scene that it stands in; readers and applyOverrides() do it, and then
+  /// settleSkies().
   void settle(Up up);
   /// Its option, as its face spells it: --sky, --light point.
   std::string option() const;
@@ -356,14 +284,38 @@ bool arePhotometric(std::span<const Light> lights);
 bool anyShines(std::span<const Light> lights);
 /// Whether one that shines comes from beyond the scene.
 bool anyShinesIn(std::span<const Light> lights);
-/// The radiance of what is seen where nothing stands, a band each; empty: of no light.
+/// The radiance of what is seen where nothing stands, a band each, of the lights that are uniform;
+/// empty: of no light.
 std::vector<double> background(std::span<const Light> lights, int bands);
-/// Those that shine and are not all round: rays do not find them.
+/// Those that shine and are all round, but not uniform.
+std::vector<Light> unevenSkies(std::span<const Light> lights);
+/// What rays do not find: those that shine and are aimed, and the bright spots of skies.
 std::vector<Light> aimedLights(std::span<const Light> lights);
+/// Tells each sky where the sun of the scene stands, and how it lights the ground. Errors:
+/// InputError for a sky that needs a sun where there is none, or several.
+void settleSkies(std::span<Light> lights, Up up);
 /// Replaces the light of that name, if there is one.
 void setLight(std::vector<Light>& lights, Light light);
 /// The same for a light that was not given a name: one of its own, "point 2", if its kind may be
-/// there more than once.
+/// there more than once. Errors: InputError for a given name that another has.
 void addLight(std::vector<Light>& lights, Light light);
+
+/// What is seen where nothing stands, of all lights that are all round.
+class Background {
+ public:
+  Background() = default;
+  /// `whole`: with the bright spots that are aimed lights to rays (aimedLights()).
+  Background(std::span<const Light> lights, int bands, bool whole = false);
+
+  std::size_t bands() const { return bands_; }
+  bool empty() const { return uniform_.empty() && domes_.empty(); }
+  /// Adds `times` the radiance in a direction, unit, W/m^2/sr, a value a band.
+  void add(const Vec3& toward, double times, std::span<double> sum) const;
+
+ private:
+  std::size_t bands_ = 0;
+  std::vector<double> uniform_;  ///< a value a band, or empty: it is dark
+  std::vector<Dome> domes_;
+};
 
 }  // namespace radiosity

@@ -38,8 +38,8 @@ struct RenderOptions {
   bool smooth = true;       ///< interpolate over vertices; false: constant patches
   double crease = 30;       ///< degrees; values are not shared across sharper edges
   bool show_backs = false;  ///< one-sided patches seen from behind: true black, false transparent
-  /// Colour where nothing is hit, opaque: a sky. None: transparent.
-  std::optional<Vec3> background;
+  /// Radiance where nothing is hit, opaque: a sky of three bands or one. Empty: transparent.
+  Background background;
   void validate() const;
 
   /// A line an option (option_line.h).
@@ -132,7 +132,7 @@ struct SurfaceLight {
   /// mesh.corners.size() * 3: B if it is known better than from the patches around; or empty.
   std::vector<double> corners;
   std::vector<double> reflected;  ///< N: as reflectedLight()
-  Vec3 sky{0.0};                  ///< radiance where nothing is hit, W/m^2/sr
+  Background sky;                 ///< what is seen where nothing is hit
   /// Light at the vertices of elements, drawn instead of the above wherever an element was
   /// evaluated; or null.
   std::shared_ptr<const Elements> elements;
@@ -153,14 +153,14 @@ std::vector<double> reflectedLight(std::span<const double> radiosity,
 /// as rgbOf().
 SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterials& materials);
 
-/// What a picture's radiance is made of, a row a pixel, as its colours the mean over the samples
-/// that hit: radiance = direct + indirect.
+/// What a picture's radiance is made of, a row a pixel: direct + indirect is its colour times its
+/// alpha, as an .exr has it.
 struct PictureParts {
   /// W/m^2/sr, red, green and blue: own emission, and the reflection of what emitters and lamps
   /// send straight; of the sky behind, all.
   std::vector<float> direct;
   std::vector<float> indirect;  ///< likewise, all else
-  std::vector<float> albedo;    ///< reflectance: red, green and blue
+  std::vector<float> albedo;    ///< reflectance, the mean over the samples that hit: likewise
   /// Standard error of the pixel's light by rays, over that light; empty: not known pixel by pixel.
   std::vector<float> error;
 };

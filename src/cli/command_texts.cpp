@@ -131,6 +131,8 @@ const char* examplesOf(Command command) {
              "  radiosity render data/cornell-box.obj -o cornell.png\n"
              "  radiosity render cornell.h5 --exposure 2.5 --width 1024 --height 1024 -o "
              "cornell.exr\n"
+             "  radiosity render cornell.h5 --show illuminance --range 0,500 -o lux.png\n"
+             "  radiosity render cornell.h5 --layers -o cornell.exr\n"
              "  radiosity render cornell.h5 --show form-factor:12 -o seen-from-12.png\n"
              "  radiosity render room.glb --camera 'eye=1,1.6,3;target=0,1,0' -o room.png -o "
              "room.h5";

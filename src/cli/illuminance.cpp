@@ -99,6 +99,10 @@ void summarizeSet(Report& report, const std::string& key, const MeasuringPoints&
   report.number("direct_mean_lx", "mean, direct", s.direct, "lx");
   report.number("indirect_mean_lx", "mean, indirect", s.indirect, "lx");
   report.number("cylindrical_mean_lx", "mean, cylindrical", s.cylinder, "lx");
+  if (s.daylight_factor > 0) {
+    report.number("daylight_factor_mean_percent", "daylight factor, mean", s.daylight_factor, "%");
+    report.number("daylight_factor_lowest_percent", "  minimum", s.lowest_daylight_factor, "%");
+  }
   if (s.highest > 0) return;
   const Note dark{Severity::warning,
                   set.name + ": no light reaches its points; do they stand outside, or face away?"};

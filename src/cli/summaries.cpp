@@ -94,7 +94,7 @@ std::string wordOfUnit(std::string unit) {
 void describeLamps(Report& report, const Scene& scene) {
   std::vector<std::vector<std::string>> rows;
   for (const Light& light : scene.lights) {
-    if (light.isAllRound()) continue;
+    if (light.isUniform()) continue;
     std::string watts;
     for (std::size_t b = 0; b < light.strength.size(); ++b) {
       const std::optional<double> power = light.power(b);
@@ -107,8 +107,9 @@ void describeLamps(Report& report, const Scene& scene) {
         {light.name, light.traits().word,
          fmt::format("{} {}", triple(strength), light.traits().unit),
          fmt::format("{} {}", triple(kLumensPerWatt * strength), light.traits().photometric),
-         fmt::format("{} {}", light.place() ? "at" : "towards", triple(where)), watts,
-         light.fileName()});
+         light.isAllRound() ? light.traits().from
+                            : fmt::format("{} {}", light.place() ? "at" : "towards", triple(where)),
+         watts, light.fileName()});
   }
   if (rows.empty()) return;
   report.section("scene", "Lights");
@@ -151,7 +152,7 @@ void describeScene(Report& report, const Scene& scene) {
   }
   report.count("emitters", "emitting surfaces", emitters);
   for (const Light& light : scene.lights) {
-    if (!light.isAllRound()) continue;
+    if (!light.isUniform()) continue;
     const std::string unit = light.traits().unit;
     report.bands(light.name + "_" + wordOfUnit(unit), light.name + " (R G B)", light.strength,
                  unit);

@@ -77,6 +77,14 @@ void writePages(Session& session, Pipeline& pipeline, bool elements, OutputSet& 
     page = writePage(temporary, pipeline, light, options, session.progress);
   });
   summarizePage(session.report, shown.picture, shown.ev, page);
+  for (const Light& sky : unevenSkies(pipeline.scene().lights)) {
+    const Note note{
+        Severity::info,
+        fmt::format("{}: a page has what it lights, by form factors; it shows no sky of "
+                    "its own behind the scene, nor to its hemicubes",
+                    sky.name)};
+    session.report.notes({&note, 1});
+  }
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace {
 
 /// The series of changes is not summed if each is more than this share of the one before.
 constexpr double kMostLeft = 0.9;
+constexpr std::size_t kHalves = 2;  ///< of the rays of a place
 /// A ray that ends on a patch without roots.
 constexpr std::uint32_t kDark = kNone - 4;
 
@@ -101,7 +102,7 @@ IndirectSources::IndirectSources(const SourceScene& scene, double rays, double m
       bands_(std::size_t(scene.materials.bands)),
       set_(kRaysOfPlace, seed),
       seed_(seed),
-      background_(background(scene.materials.lights, scene.materials.bands)),
+      background_(scene.materials.lights, scene.materials.bands),
       sources_(scene.surface, scene.lookup, scene.materials.bands) {
   for (Index r = 0; r < scene.surface.roots.size(); ++r) {
     if (!isEvaluated(r)) continue;
@@ -119,6 +120,7 @@ IndirectSources::IndirectSources(const SourceScene& scene, double rays, double m
   places_ = std::max<std::size_t>(1, std::size_t(of_cell) / kRaysOfPlace);
   direct_.resize(places() * bands_);
   ends_.resize(places() * kRaysOfPlace);
+  if (!background_.empty()) sky_.resize(places() * kHalves * bands_);
   indirect_.resize(cells_.size() * bands_);
 }
 
@@ -160,6 +162,7 @@ void IndirectSources::traceCell(std::size_t e) {
   const std::span<const Index> own = scene_.surface.owners[scene_.mesh.polygon[patch]];
   std::array<RayEnd, kRaysOfPlace> ends;
   std::vector<double> direct(bands_);
+  std::vector<double> sky;  // of each half
   for (std::size_t p = 0; p < places_; ++p) {
     const Vec2 at = placeOf(cell, p);
     const Vec3 point = pointAt(scene_.mesh, roots, cell.root, at);
@@ -169,11 +172,21 @@ void IndirectSources::traceCell(std::size_t e) {
     std::ranges::copy(direct, direct_.begin() + std::ptrdiff_t(place * bands_));
     const HemisphereSet::Turn turn = set_.turnAt(point + scene_.mesh.normal[patch], seed_);
     scene_.rays.look({point, scene_.mesh.normal[patch], own}, set_, turn.set, turn.angle, ends);
-    std::array<std::size_t, 2> next{place * kRaysOfPlace, place * kRaysOfPlace + kRaysOfPlace / 2};
+    std::array<std::size_t, kHalves> next{place * kRaysOfPlace,
+                                          place * kRaysOfPlace + kRaysOfPlace / 2};
+    sky.assign(kHalves * bands_, 0.0);
     for (std::size_t k = 0; k < kRaysOfPlace; ++k) {
+      const std::size_t half = set_.isFirst(turn.set, k) ? 0 : 1;
       std::uint32_t end = ends[k].patch;
+      if (end == RayEnd::kSky) {
+        background_.add(ends[k].at, std::numbers::pi,
+                        std::span(sky).subspan(half * bands_, bands_));
+      }
       if (end < RayEnd::kOwn) end = sources_.sourceAt(end, ends[k].at, point).value_or(kDark);
-      ends_[next[set_.isFirst(turn.set, k) ? 0 : 1]++] = end;
+      ends_[next[half]++] = end;
+    }
+    if (!sky_.empty()) {
+      std::ranges::copy(sky, sky_.begin() + std::ptrdiff_t(place * kHalves * bands_));
     }
   }
 }
@@ -248,10 +261,12 @@ void IndirectSources::keepOthers(std::vector<float>& values) const {
 /// Adds a place's light. Openness and light are of the same rays, whose noise they share: so that
 /// of either half of the rays is multiplied with that of the other.
 void IndirectSources::addPlace(std::size_t e, std::size_t p, Light& light) const {
-  constexpr std::size_t kHalves = 2;
   const std::size_t place = e * places_ + p;
   thread_local std::vector<double> sum;  // of each half
   sum.assign(kHalves * bands_, 0.0);
+  for (std::size_t k = 0; k < sum.size() && !sky_.empty(); ++k) {
+    sum[k] = sky_[place * kHalves * bands_ + k];
+  }
   std::array<double, kHalves> counted{};
   std::array<double, kHalves> far{};
   std::size_t behind = 0;
@@ -264,9 +279,6 @@ void IndirectSources::addPlace(std::size_t e, std::size_t p, Light& light) const
       ++behind;
     } else if (end == RayEnd::kSky) {
       ++far[half];
-      for (std::size_t b = 0; b < background_.size(); ++b) {
-        sum[half * bands_ + b] += std::numbers::pi * background_[b];
-      }
     } else if (end != kDark) {
       far[half] += SourceCells::isFar(end) ? 1 : 0;
       sources_.add(end, std::span(sum).subspan(half * bands_, bands_));

@@ -97,7 +97,7 @@ class IndirectSources {
   std::size_t places_ = 1;  ///< of a cell
   HemisphereSet set_;
   std::uint64_t seed_;
-  std::vector<double> background_;  ///< radiance a band, or empty
+  Background background_;
   SourceCells sources_;
   std::vector<Cell> cells_;    ///< those evaluated
   std::vector<double> area_;   ///< of these
@@ -105,6 +105,8 @@ class IndirectSources {
   /// Of these * places * kRaysOfPlace, the first half of a place's rays before the other: sources,
   /// or what a RayEnd has.
   std::vector<std::uint32_t> ends_;
+  /// Of these * places * 2 halves * bands: what the rays that end on the sky bring; empty: dark.
+  std::vector<float> sky_;
   std::vector<double> correction_;  ///< N * bands: to indirect irradiance; or empty
   std::vector<float> before_;       ///< values, a pass before
   std::vector<double> indirect_;    ///< of cells evaluated * bands: mean irradiance

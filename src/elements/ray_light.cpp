@@ -6,9 +6,7 @@ namespace radiosity {
 
 void RayLight::add(const RayEnd& end, const Vec3& from, std::span<double> sum) const {
   if (end.patch == RayEnd::kSky) {
-    for (std::size_t b = 0; b < background_.size(); ++b) {
-      sum[b] += std::numbers::pi * background_[b];
-    }
+    background_.add(end.at, std::numbers::pi, sum);
   } else if (end.patch < RayEnd::kOwn) {
     if (const auto source = sources_.sourceAt(end.patch, end.at, from)) sources_.add(*source, sum);
   }

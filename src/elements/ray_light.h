@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "elements/source_cells.h"
 #include "formfactor/rays/point_rays.h"
@@ -16,14 +15,14 @@ class RayLight {
  public:
   /// Keeps `sources` by reference.
   RayLight(const SourceCells& sources, std::span<const Light> lights)
-      : sources_(sources), background_(background(lights, sources.bands())) {}
+      : sources_(sources), background_(lights, sources.bands()) {}
 
   /// Adds it; nothing of a back without patches, nor of a polygon that the ray left from.
   void add(const RayEnd& end, const Vec3& from, std::span<double> sum) const;
 
  private:
   const SourceCells& sources_;
-  std::vector<double> background_;  ///< radiance a band, or empty
+  Background background_;
 };
 
 }  // namespace radiosity

@@ -26,12 +26,13 @@ class LightOnPatches {
   explicit LightOnPatches(const PatchMesh& mesh);
   ~LightOnPatches();
 
-  /// Means over the patches of the lights that come from where nothing stands. `open`: by patch,
-  /// the share of what leaves it that meets nothing, of which an exact row's account may be a
-  /// little below 0. Errors: InputError if shares are not those of the mesh.
-  std::vector<double> fromAround(std::span<const Light> lights, std::span<const double> open,
-                                 int bands) const;
-  /// Means over the patches of aimed lights. Throws Cancelled.
+  /// Means over the patches of the lights that come from where nothing stands, but for bright spots
+  /// of skies. `open`: by patch, the share of what leaves it that meets nothing, of which an
+  /// exact row's account may be a little below 0. Errors: InputError if shares are not those of the
+  /// mesh. Throws Cancelled.
+  LightFall fromAround(std::span<const Light> lights, std::span<const double> open, int bands,
+                       Progress& progress);
+  /// Means over the patches of aimed lights, and of bright spots of skies. Throws Cancelled.
   LightFall aimed(std::span<const Light> lights, int bands, Progress& progress);
   /// The sum of both.
   LightFall all(std::span<const Light> lights, std::span<const double> open, int bands,
@@ -43,13 +44,18 @@ class LightOnPatches {
     Vec3 normal{0.0};
     Index own = kNone;
   };
-  /// The irradiance of places by aimed lights.
+  /// The irradiance of places by aimed lights, and by skies that are not uniform.
   std::vector<double> aimedAt(std::span<const Light> lights, std::span<const Place> places,
                               int bands, Progress& progress);
 
  private:
   struct Rays;
+  struct Means;
   const Rays& rays();
+  Means meansOfAimed(std::span<const Light> lights, int bands, Progress& progress);
+  Means meansFromAround(std::span<const Light> lights, std::span<const double> open, int bands,
+                        Progress& progress);
+  LightFall fallOf(Means means) const;
 
   const PatchMesh& mesh_;
   std::unique_ptr<Rays> rays_;

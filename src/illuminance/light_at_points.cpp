@@ -55,6 +55,23 @@ void requirePoints(std::span<const Vec3> points, std::span<const Vec3> normals) 
   }
 }
 
+/// PointLightValues::open_lux.
+double openLux(const PatchMaterials& materials) {
+  const auto bands = std::size_t(materials.bands);
+  if (!isPhotometric(materials.bands)) return 0;
+  if (std::ranges::any_of(materials.emission, [](double value) { return value > 0; })) return 0;
+  std::vector<double> ground(bands, 0.0);
+  for (const Light& light : materials.lights) {
+    if (!light.shines()) continue;
+    for (std::size_t b = 0; b < bands; ++b) {
+      const std::optional<double> here = light.overcast(b);
+      if (!here) return 0;
+      ground[b] += *here;
+    }
+  }
+  return photometricOf(ground);
+}
+
 /// Sums of one of the sets of rays.
 struct SetSums {
   std::vector<double> light;  ///< kMeasured * bands: of weight times radiosity
@@ -247,6 +264,7 @@ PointLightValues lightAtPoints(const PatchMesh& mesh, const PatchMaterials& mate
   PointLightValues out;
   out.bands = materials.bands;
   out.up = up;
+  out.open_lux = openLux(materials);
   out.direct.assign(points.size() * kMeasured * std::size_t(materials.bands), 0.0);
   out.indirect.assign(out.direct.size(), 0.0);
   out.error.assign(points.size(), 0.0);

@@ -27,6 +27,10 @@ double PointLightValues::lux(std::size_t point, Measured what) const {
   return directLux(point, what) + indirectLux(point, what);
 }
 
+double PointLightValues::daylightFactor(std::size_t point) const {
+  return open_lux > 0 ? 100 * lux(point, Measured::facing) / open_lux : 0;
+}
+
 /// The integral of L sin(t) cos(a) is what the side gets less what its other side gets.
 double PointLightValues::semicylindricalLux(std::size_t point, Measured side) const {
   const std::size_t face = std::size_t(side) - std::size_t(Measured::x_plus);
@@ -72,6 +76,10 @@ IlluminanceSummary summaryOf(const MeasuringPoints& points, const PointLightValu
   if (out.points == 0) return out;
   for (double* mean : {&out.mean, &out.direct, &out.indirect, &out.cylinder}) {
     *mean /= double(out.points);
+  }
+  if (light.open_lux > 0) {
+    out.daylight_factor = 100 * out.mean / light.open_lux;
+    out.lowest_daylight_factor = 100 * out.lowest / light.open_lux;
   }
   return out;
 }

@@ -215,6 +215,12 @@ std::vector<std::string> headingOf(const MeasuringPoints& points, const Measurin
                                 valueText(s.mean), valueText(s.lowest), valueText(s.highest),
                                 s.overMean(), s.overHighest()));
   }
+  if (s.daylight_factor > 0) {
+    lines.push_back(fmt::format("daylight factor: mean {} %, from {} to {} %; outside {} lx",
+                                valueText(s.daylight_factor), valueText(s.lowest_daylight_factor),
+                                valueText(100 * s.highest / light.open_lux),
+                                valueText(light.open_lux)));
+  }
   lines.push_back(fmt::format("{} points, {:.3g} x {:.3g} m apart; right is {}, up {}",
                               points.size(), grid.step_u, grid.step_v, wayText(grid.u),
                               wayText(grid.v)));

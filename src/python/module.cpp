@@ -2,6 +2,7 @@
 // passes contiguous arrays of the type and shape that each function names.
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <string>
@@ -82,7 +83,9 @@ py::list describedLights() {
   for (const Light& light : lightKinds()) {
     if (!light.traits().single) continue;
     py::dict option;
-    option["name"] = light.name;
+    std::string name = light.name;
+    std::ranges::replace(name, '-', '_');
+    option["name"] = name;
     if (light.traits().usual > 0) {
       option["value"] = py::none();
     } else {

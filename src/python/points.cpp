@@ -31,6 +31,7 @@ py::dict illuminance(const SolutionHandle& light, const Array<double>& points,
   });
   py::dict out;
   out["rays"] = values.report.rays;
+  out["open_lux"] = values.open_lux;
   out["direct"] = measuredRows(std::move(values.direct), at.size(), values.bands);
   out["indirect"] = measuredRows(std::move(values.indirect), at.size(), values.bands);
   out["error"] = taken(std::move(values.error));

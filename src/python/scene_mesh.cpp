@@ -56,6 +56,7 @@ std::shared_ptr<Scene> sceneOfArrays(const Array<double>& vertices, const Array<
     light.settle(scene->up);
     addLight(scene->lights, std::move(light));
   }
+  settleSkies(scene->lights, scene->up);
   {
     const py::gil_scoped_release unlocked;
     validate(*scene);

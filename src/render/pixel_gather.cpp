@@ -26,7 +26,7 @@ class Gathering {
     options.validate();
     gather.validate();
     if (!light.points) throw InputError("render: there is no light at points to gather");
-    if (light.sky != Vec3(0.0)) options_.background = light.sky;
+    if (!light.sky.empty()) options_.background = light.sky;
     report_.rays_a_pixel = raysOf(gather);
   }
 

@@ -32,13 +32,13 @@ class PixelParts {
     sums_.light += shade.light;
     sums_.noise_square += shade.noise_square;
   }
-  /// `mean`: the colour of the pixel, over `hits` samples.
-  void end(std::size_t pixel, const Colour& mean, int hits) {
+  /// `mean`: the colour of the pixel, over `hits` of `samples` samples.
+  void end(std::size_t pixel, const Colour& mean, int hits, int samples) {
     if (parts_ == nullptr) return;
     for (std::size_t b = 0; b < 3; ++b) {
-      const double direct = sums_.direct[b] / hits;
+      const double direct = sums_.direct[b] / samples;
       parts_->direct[3 * pixel + b] = float(direct);
-      parts_->indirect[3 * pixel + b] = float(mean[b] - direct);
+      parts_->indirect[3 * pixel + b] = float(mean[b] * hits / samples - direct);
       parts_->albedo[3 * pixel + b] = float(sums_.albedo[b] / hits);
     }
     if (!parts_->error.empty() && sums_.light > 0) {
@@ -56,13 +56,8 @@ class PixelParts {
 /// bits.
 class RgbPixel {
  public:
-  RgbPixel(Image& image, const std::optional<Vec3>& background, PictureParts* parts)
-      : image_(image), parts_(parts) {
-    if (!background) return;
-    has_background_ = true;
-    background_.value = {background->x, background->y, background->z};
-    background_.direct = background_.value;
-  }
+  RgbPixel(Image& image, const Background& background, PictureParts* parts)
+      : image_(image), background_(background), parts_(parts) {}
 
   void begin() {
     hits_ = samples_ = 0;
@@ -71,8 +66,13 @@ class RgbPixel {
   }
   void sample(Seen seen, const Shade& shade) {
     ++samples_;
-    if (seen == Seen::nothing && !has_background_) return;
-    const Shade shown = seen == Seen::front ? shade : seen == Seen::nothing ? background_ : Shade();
+    Shade shown;
+    if (seen == Seen::front) {
+      shown = shade;
+    } else if (seen == Seen::nothing) {
+      if (background_.empty()) return;
+      shown = beyond(shade.value);
+    }
     if (hits_++ == 0) first_ = shown.value;
     for (int b = 0; b < 3; ++b) sum_[b] += shown.value[b] - first_[b];
     parts_.add(shown);
@@ -85,14 +85,24 @@ class RgbPixel {
     float* out = image_.rgba.data() + pixel * 4;
     for (int b = 0; b < 3; ++b) out[b] = float(mean[b]);
     out[3] = float(hits_) / float(samples_);
-    parts_.end(pixel, mean, hits_);
+    parts_.end(pixel, mean, hits_, samples_);
   }
 
  private:
+  /// What is seen where nothing stands.
+  Shade beyond(const Colour& direction) const {
+    Shade shade;
+    const std::size_t bands = background_.bands();
+    background_.add({direction[0], direction[1], direction[2]}, 1,
+                    std::span(shade.value).first(bands));
+    if (bands == 1) shade.value.fill(shade.value[0]);
+    shade.direct = shade.value;
+    return shade;
+  }
+
   Image& image_;
+  const Background& background_;
   PixelParts parts_;
-  Shade background_;
-  bool has_background_ = false;
   int hits_ = 0;
   int samples_ = 0;
   Colour first_{};
@@ -234,9 +244,7 @@ SurfaceLight surfaceLight(std::span<const double> radiosity, const PatchMaterial
   SurfaceLight light;
   light.patches = rgbOf(radiosity, materials.bands);
   light.reflected = reflectedLight(radiosity, materials);
-  const std::vector<double> sky =
-      rgbOf(background(materials.lights, materials.bands), materials.bands);
-  if (!sky.empty()) light.sky = Vec3(sky[0], sky[1], sky[2]);
+  light.sky = Background(materials.lights, materials.bands, true);
   return light;
 }
 
@@ -266,7 +274,7 @@ std::vector<std::uint8_t> visiblePatches(const PatchMesh& mesh, const Camera& ca
 SurfaceLight fallingLight(SurfaceLight light, std::span<const double> irradiance, int bands) {
   light.patches = rgbOf(irradiance, bands);
   light.corners.clear();
-  light.sky = Vec3(0.0);
+  light.sky = {};
   light.reflectance.assign(irradiance.size(), 1.0);
   light.emission.assign(irradiance.size(), 0.0);
   light.materials.reset();
@@ -276,7 +284,7 @@ SurfaceLight fallingLight(SurfaceLight light, std::span<const double> irradiance
 Image renderRadiance(const PatchMesh& mesh, const SurfaceLight& light, const Camera& camera,
                      const RenderOptions& options, Progress& progress, PictureParts* parts) {
   RenderOptions with_sky = options;
-  if (light.sky != Vec3(0.0)) with_sky.background = light.sky;
+  if (!light.sky.empty()) with_sky.background = light.sky;
   if (light.elements && options.smooth) {
     with_sky.validate();
     const std::vector<double> radiance = radianceOf(light.patches);

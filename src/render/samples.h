@@ -1,6 +1,8 @@
 // The loop over tiles, pixels and samples for all pictures.
 #pragma once
 
+#include <glm/geometric.hpp>
+
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "radiosity/render.h"
@@ -35,7 +37,8 @@ inline bool shadesWhole(const ItemBuffer& items, const PatchField& field, const 
 
 /// Calls pixel(x, y, first sample) ... in tiles on all threads. `Pixel` is a class with
 ///   void begin();                                        a new pixel
-///   void sample(Seen, const Shade&);                     S^2 times; values for Seen::front only
+///   void sample(Seen, const Shade&);                     S^2 times; values for Seen::front alone;
+///                                                        for Seen::nothing `value` is the direction
 ///   void end(int x, int y);                              the pixel is complete
 /// One Pixel is made per tile by make(tile); pixels come row by row, samples always in one order.
 template <class Make>
@@ -70,12 +73,17 @@ void forSamples(const PatchMesh& mesh, const ItemBuffer& items, const PatchField
         }
         for (int s = 0; s < count; ++s) {
           const Index hit = seen.piece[seen.at(x, y, s)];
-          if (hit == kNone || items.seenFromBehind(hit)) {
-            pixel.sample(hit == kNone ? Seen::nothing : Seen::back, {});
+          const Vec2 offset = sampleOffset(s, seen.samples);
+          if (hit == kNone) {
+            const Vec3 d = glm::normalize(items.view().rayThrough(x + offset.x, y + offset.y));
+            pixel.sample(Seen::nothing, {.value = {d.x, d.y, d.z}});
+            continue;
+          }
+          if (items.seenFromBehind(hit)) {
+            pixel.sample(Seen::back, {});
             continue;
           }
           if (hit != piece) shader.setPiece(piece = hit);
-          const Vec2 offset = sampleOffset(s, seen.samples);
           pixel.sample(Seen::front, shader.at(x + offset.x, y + offset.y));
         }
         pixel.end(x, y);

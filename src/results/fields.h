@@ -80,7 +80,7 @@ void describeLights(Archive& a, Described<Archive, std::vector<Light>>& lights, 
     try {
       lights = lightsOf(sky, others, int(bands));
       for (Light& light : lights) {
-        if (!light.isAllRound()) light.validate();
+        if (!light.isUniform()) light.validate();
         light.photometric = std::erase(photometric, light.name) > 0;
       }
     } catch (const InputError& error) {

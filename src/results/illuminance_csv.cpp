@@ -24,6 +24,7 @@ std::string illuminanceHeader(const PointLightValues& light) {
                                  : fmt::format(",{}_{}_W_per_m2", of, b);
     }
   }
+  if (light.open_lux > 0) header += ",daylight_factor_percent";
   return header + ",standard_error,in_body,points\n";
 }
 
@@ -43,6 +44,7 @@ std::string illuminanceCells(const PointLightValues& light, std::size_t k) {
   for (const std::span<const double>& part : {direct, indirect}) {
     for (const double value : part) cells += fmt::format(",{}", value);
   }
+  if (light.open_lux > 0) cells += fmt::format(",{}", light.daylightFactor(k));
   return cells + fmt::format(",{},{}", light.error[k], int(light.inside[k]));
 }
 

@@ -275,7 +275,7 @@ bool Overrides::leaveOutLights(const std::string& name) {
   std::vector<std::string> gone;
   for (const Light& light : scene_.lights) {
     const bool shown = light.name == name || (isPattern(name) && matchesPattern(name, light.name));
-    if (shown && !light.isAllRound()) gone.push_back(light.name);
+    if (shown && !light.isUniform()) gone.push_back(light.name);
   }
   std::erase_if(scene_.lights, [&](const Light& light) {
     return std::ranges::find(gone, light.name) != gone.end();
@@ -423,6 +423,7 @@ void applyOverrides(Scene& scene, const SceneOverrides& given) {
     edits.requireFaces();
     overrides.noteRounding();
     for (const Light& light : given.lights) overrides.replace(light, scene.up);
+    settleSkies(scene.lights, scene.up);
   } catch (...) {
     scene.lights = std::move(lights);
     scene.up = up;

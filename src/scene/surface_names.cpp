@@ -83,7 +83,7 @@ std::string unknownNameText(const Scene& scene, const std::string& name) {
   std::vector<std::string> known = knownNames(scene);
   bool any_light = false;
   for (const Light& light : scene.lights) {
-    if (light.isAllRound()) continue;
+    if (light.isUniform()) continue;
     any_light = true;
     known.push_back(light.name);
   }

@@ -199,7 +199,8 @@ void noteErrorOf(const LightFall& by_lights, SolveSummary& summary) {
         fmt::format("; {} lights nothing: it stands in a body or behind surfaces", name);
   }
   if (!(by_lights.error > 0)) return;
-  summary.message += fmt::format("; light of lamps off by about {:.2g}%", 100 * by_lights.error);
+  summary.message +=
+      fmt::format("; light of lamps and skies off by about {:.2g}%", 100 * by_lights.error);
 }
 
 }  // namespace

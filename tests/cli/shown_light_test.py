@@ -121,6 +121,16 @@ class ShownLight(CliTest):
             if how:
                 np.testing.assert_array_equal(layer["error"], 0)  # there is nothing to find by rays
 
+    def test_at_its_edge_a_floor_is_the_sum_of_its_layers_too(self):
+        self.run_program("render", "floor.obj", *LAMP, *VIEW[:-1], "4", "--layers", "-o", "p.exr")
+        layer = ExrFile(self.folder / "p.exr").channels
+        edge = (layer["A"] > 0) & (layer["A"] < 1)
+        self.assertGreater(np.count_nonzero(edge), 50)
+        for colour in "RGB":
+            # Each is rounded to single precision.
+            np.testing.assert_allclose(layer["direct." + colour] + layer["indirect." + colour], layer[colour],
+                                       rtol=1e-6, atol=1e-9)
+
     def test_layers_need_elements_and_an_exr(self):
         for wrong, said in ((["-o", "p.png"], "--layers: are channels of an .exr"),
                             (["-o", "p.exr", "--elements", "off"], "leave out --elements off"),

@@ -10,6 +10,7 @@
 #include "radiosity/point_factors.h"
 #include "radiosity/solve.h"
 #include "support/scene_builder.h"
+#include "support/window_room.h"
 
 namespace radiosity {
 namespace {
@@ -212,6 +213,27 @@ TEST(LightAtPoints, ASkyFillsWhatIsOpen) {
   // What the floor's edge leaves open: 3 m off, and points stand 17 micrometres up. Rays: 1,024.
   EXPECT_NEAR(light.indirectOf(0, x_plus)[0], kPi, 0.01 * kPi);
   EXPECT_NEAR(light.indirectOf(0, cylinder)[0], kPi, 0.01 * kPi);
+}
+
+// In a black room it is the sky component of textbooks.
+TEST(LightAtPoints, TheDaylightFactorIsThatThroughAWindow) {
+  SceneBuilder builder = test::roomWithWindow(0, 0.0);
+  std::vector<Light> sky{lightOf("cie-sky,10000lx,type=16")};
+  sky[0].settle(Up::z);
+  SolvedScene room(builder, sky);
+  const std::vector<Vec3> points{{2, 1.5, 0.8}, {1.2, 2.5, 0.5}, {3, 1, 0.2}, {0.5, 3, 0.8}};
+  const PointLightValues light = room.at(points, {0, 0, 1}, {.tolerance = 2e-3});
+  EXPECT_NEAR(light.open_lux, 10000, 1e-9);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double expected = 100 * test::throughWindow(points[k]).y;
+    // Three standard errors, as they are stated.
+    EXPECT_NEAR(light.daylightFactor(k) / expected, 1, 3 * light.error[k]) << k;
+    EXPECT_LT(light.error[k], 0.02) << k;  // of 32,768 rays all around
+  }
+  SolvedScene clear(builder, {uniformSky({2, 2, 2})});
+  EXPECT_NEAR(clear.at(points, {0, 0, 1}).open_lux, 683 * 2 * kPi, 1e-9);
+  SolvedScene lit(builder, {sky[0], pointLamp({2, 2, 2}, 10)});
+  EXPECT_EQ(lit.at(points, {0, 0, 1}).open_lux, 0);
 }
 
 TEST(LightAtPoints, AStatedErrorHoldsAndFalls) {

@@ -283,3 +283,23 @@ def test_heat_and_gathered_light_are_drawn(cornell):
         same = rad.render(mesh, light.radiosity, width=8)
         assert same.max() > 0
         assert (rad.render(mesh, light, width=8) == same).all()
+
+
+def test_skies_light_and_the_daylight_factor_is_told():
+    square = [[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]]
+    overcast = rad.Light("cie-sky", diffuse="10000lx", type=16)
+    black = {"groups": ["floor"], "materials": {"floor": {"reflectance": 0}}}
+    for scene in (rad.Scene(square, [[0, 1, 2, 3]], lights=[overcast], **black),
+                  rad.Scene(square, [[0, 1, 2, 3]], cie_sky="10000lx,type=16", **black)):
+        F = rad.form_factors(rad.mesh(scene, patches=4))
+        light = rad.solve(F)
+        # By rays, to .5% of each patch; three times that.
+        assert light.irradiance == pytest.approx(np.full_like(light.irradiance, 10000 / 683), rel=1.5e-2)
+        # Up, and upright: (3 pi + 8) / (14 pi) of that under Moon and Spencer's sky. Rays to .2%.
+        found = light.illuminance([[0, 0.5, 0]] * 2, [[0, 1, 0], [1, 0, 0]], tolerance=2e-3)
+        assert found.daylight_factor == pytest.approx([100, 100 * (3 * np.pi + 8) / (14 * np.pi)], rel=6e-3)
+    with pytest.raises(rad.InputError, match="where the sun stands"):
+        rad.Scene(square, [[0, 1, 2, 3]], lights=[rad.Light("cie-sky", diffuse=1, type=12)])
+    lamps = rad.Scene(square, [[0, 1, 2, 3]], lights=[overcast, rad.Light("point", intensity=1, at=(0, 1, 0))])
+    light = rad.solve(rad.form_factors(rad.mesh(lamps, patches=4)))
+    assert light.illuminance([[0, 0.5, 0]]).daylight_factor is None

@@ -184,7 +184,8 @@ TEST(Lights, AMaterialKeepsItsPropertiesBesideALightOfItsName) {
 
 TEST(Lights, WhatIsNoLightIsRefusedInALine) {
   EXPECT_EQ(refusal("lamp,1"),
-            "light: no light is called 'lamp'; there are sky, point, spot, sun, ies");
+            "light: no light is called 'lamp'; there are sky, point, spot, sun, ies, "
+            "cie-sky, perez-sky, image-sky");
   EXPECT_EQ(refusal("point"),
             "light='point': '' is not one finite number or three with commas, W/sr (or cd)");
   EXPECT_EQ(refusal("point,1,x=3"),

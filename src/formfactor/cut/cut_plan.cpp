@@ -181,7 +181,8 @@ class Trials {
 CutPlan planCuts(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,
                  const FormFactorOptions& options, Progress& progress) {
   if (tree.patches().empty()) return {};
-  TrialLights lights = trialLights(mesh, scene, tree, options.exact_rows, options.seed, progress);
+  TrialLights lights = trialLights(mesh, scene, tree, options.exact_rows, options.onlyForSources(),
+                                   options.seed, progress);
   return Trials(scene, tree, std::move(lights), progress)
       .plan(options.toleranceOf(FormFactorMethod::cut));
 }

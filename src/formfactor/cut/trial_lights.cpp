@@ -137,7 +137,7 @@ void shine(const RayScene& scene, std::span<const PatchTree::Patch> patches, con
   }
 }
 
-std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& tree,
+std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& tree, bool with_sky,
                                         std::uint64_t seed) {
   std::vector<PatchTree::Patch> some;
   for (const std::size_t place : someOf(tree)) some.push_back(tree.patches()[place]);
@@ -155,7 +155,7 @@ std::array<Trial, kTrials> chooseTrials(const RayScene& scene, const PatchTree& 
   for (std::size_t t = 0; t < trials.size(); ++t) trials[t] = candidates[t].second;
   const bool is_open = std::ranges::any_of(
       candidates, [](const auto& one) { return one.second.kind == Trial::Kind::sun; });
-  if (is_open) trials.back() = {};
+  if (with_sky && is_open) trials.back() = {};
   return trials;
 }
 
@@ -173,7 +173,7 @@ void forParts(const PatchTree& tree, Progress& progress, const Part& part) {
 }
 
 TrialLights lightOf(std::span<const Trial> trials, const RayScene& scene, const PatchTree& tree,
-                    std::uint64_t seed, Progress& progress) {
+                    bool of_all, std::uint64_t seed, Progress& progress) {
   TrialLights light;
   light.direct.assign(scene.size() * kTrials, 0.0);
   light.radiosity = light.direct;
@@ -186,7 +186,7 @@ TrialLights lightOf(std::span<const Trial> trials, const RayScene& scene, const 
       is_sky ? shineFromSky(scene, some, seed, of) : shine(scene, some, trials[t], of);
       for (std::size_t k = 0; k < some.size(); ++k) {
         light.radiosity[some[k].patch * kTrials + t] = kReflected * of[k];
-        if (!is_sky) light.direct[some[k].patch * kTrials + t] = of[k];
+        if (of_all && !is_sky) light.direct[some[k].patch * kTrials + t] = of[k];
       }
     });
   }
@@ -289,10 +289,11 @@ std::vector<std::size_t> someOf(const PatchTree& tree) {
 }
 
 TrialLights trialLights(const PatchMesh& mesh, const RayScene& scene, const PatchTree& tree,
-                        std::span<const Index> emitters, std::uint64_t seed, Progress& progress) {
+                        std::span<const Index> emitters, bool sources, std::uint64_t seed,
+                        Progress& progress) {
   TrialLights light = ownLight(mesh, scene, tree, emitters, seed, progress);
   if (!light.radiosity.empty()) return light;
-  return lightOf(chooseTrials(scene, tree, seed), scene, tree, seed, progress);
+  return lightOf(chooseTrials(scene, tree, sources, seed), scene, tree, sources, seed, progress);
 }
 
 }  // namespace radiosity

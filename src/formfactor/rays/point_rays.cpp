@@ -98,8 +98,11 @@ glm::vec3 PointRays::lifted(const Vec3& from, const Vec3& normal) const {
 
 RayEnd PointRays::endOf(const RTCRayHit16& packet, int k, std::span<const Index> own) const {
   RayEnd end;
-  if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) return end;
   const glm::vec3 along(packet.ray.dir_x[k], packet.ray.dir_y[k], packet.ray.dir_z[k]);
+  if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) {
+    end.at = along;
+    return end;
+  }
   const EmbreeScene::End hit = embree_.endAt(packet, k, kNone);
   end.polygon = targets_.polygonOf(hit.triangle);
   if (std::find(own.begin(), own.end(), end.polygon) != own.end()) {

@@ -21,7 +21,7 @@ struct RayEnd {
   static constexpr std::uint32_t kOwn = kNone - 3;    ///< a polygon that it left from: no true hit
   std::uint32_t patch = kSky;
   Index polygon = kNone;  ///< that was hit
-  Vec3 at{0.0};           ///< metres; of a hit
+  Vec3 at{0.0};           ///< metres; of the sky: the direction, unit
 };
 
 /// A point of a surface; `own`: the polygons that it lies on, which no ray from it ends on.

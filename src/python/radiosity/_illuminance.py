@@ -30,6 +30,8 @@ class Illuminance(NamedTuple):
     indirect_lux: Optional[np.ndarray]  # (P,)
     cube_lux: Optional[np.ndarray]  # (P, 6): on surfaces that face +x, -x, +y, -y, +z, -z
     cylindrical_lux: Optional[np.ndarray]  # (P,), EN 12464-1
+    daylight_factor: Optional[np.ndarray]  # (P,), percent of open level ground; None: not skies alone,
+    #                                        or one with a sun in it
     error: np.ndarray  # (P,): standard error of the rays over `total`
     in_body: np.ndarray  # (P,), bool: most that the point sees are black backs
 
@@ -58,6 +60,8 @@ def measured(light: "_core.Solution", bands: Tuple[int, ...], points: Any, norma
     facing = [None if values is None else values[:, 0] for values in lux]
     cube = None if lux[0] is None else lux[0][:, 1:7]
     cylinder = None if lux[0] is None else lux[0][:, 7]
+    outside = found["open_lux"]
+    daylight = 100 * facing[0] / outside if facing[0] is not None and outside > 0 else None
     return Illuminance(total[:, 0].reshape(shape), direct[:, 0].reshape(shape), indirect[:, 0].reshape(shape),
-                       facing[0], facing[1], facing[2], cube, cylinder, found["error"],
-                       found["inside"].astype(bool))
+                       facing[0], facing[1], facing[2], cube, cylinder, daylight,
+                       found["error"], found["inside"].astype(bool))

@@ -102,9 +102,10 @@ def _materials(names: Sequence[str], given: Optional[Mapping[Any, Mapping[str, A
 class Light(Fixed):
     """A light without a surface, for load() and Scene().
 
-    kind: point, spot, sun or ies. parameters: its strength by its name (intensity, W/sr; irradiance of
-    what faces a sun, W/m^2; flux of a lamp, W; one number, three, or a text with another unit, "800cd",
-    "900lm"), what else the kind takes (at, aim, outer, elevation, ...; radiosity info --help lists
+    kind: point, spot, sun, ies, cie-sky, perez-sky or image-sky. parameters: its strength by its name
+    (intensity, W/sr; irradiance of what faces a sun, W/m^2; flux of a lamp, W; diffuse irradiance of
+    open ground under a sky, W/m^2; one number, three, or a text with another unit, "800cd", "900lm",
+    "10000lx"), what else the kind takes (at, aim, outer, elevation, ...; radiosity info --help lists
     them), and `name`. ies: `file` is the path of an IES LM-63 (.ies) or EULUMDAT (.ldt) file, which is
     read when the scene is made; its flux is the default.
 
@@ -146,7 +147,7 @@ def _lights(given: Mapping[str, Any], more_lights: Any = ()) -> list:
             value = ",".join(map(repr, _colour(word, value)))
         elif not value:
             raise InputError(f"{word}: is an empty text; give its strength, or leave it out")
-        texts_of.append((word, value))
+        texts_of.append((word.replace("_", "-"), value))
     listed = [more_lights] if isinstance(more_lights, (str, Light)) else list(more_lights)
     for light in listed:
         if isinstance(light, Light):

@@ -37,8 +37,15 @@ bool Light::shines() const {
   return std::ranges::any_of(strength, [](double value) { return value > 0; });
 }
 
-bool Light::isAllRound() const {
+bool Light::isUniform() const {
   return std::visit([](const auto& of) { return requires { of.radiance(1.0); }; }, kind);
+}
+
+bool Light::isAllRound() const {
+  const auto isDome = [](const auto& of) {
+    return requires { of.dome(std::span<const double>(), true); };
+  };
+  return isUniform() || std::visit(isDome, kind);
 }
 
 double Light::radiance(std::size_t band) const {
@@ -52,6 +59,24 @@ double Light::radiance(std::size_t band) const {
 
 double Light::fromAround(std::size_t band, double open) const {
   return std::numbers::pi * radiance(band) * open;
+}
+
+Dome Light::dome(bool whole) const {
+  return std::visit(
+      [&](const auto& of) -> Dome {
+        if constexpr (requires { of.dome(strength, whole); }) return of.dome(strength, whole);
+        return {};
+      },
+      kind);
+}
+
+std::optional<double> Light::overcast(std::size_t band) const {
+  return std::visit(
+      [&](const auto& of) -> std::optional<double> {
+        if constexpr (requires { of.overcast(1.0); }) return of.overcast(strength[band]);
+        return std::nullopt;
+      },
+      kind);
 }
 
 LightRay Light::ray(const Vec3& place, double u, double v) const {
@@ -160,22 +185,6 @@ bool anyShines(std::span<const Light> lights) {
 bool anyShinesIn(std::span<const Light> lights) {
   return std::ranges::any_of(
       lights, [](const Light& light) { return light.isFromOutside() && light.shines(); });
-}
-
-std::vector<double> background(std::span<const Light> lights, int bands) {
-  if (lights.empty()) return {};
-  std::vector<double> radiance(std::size_t(bands), 0.0);
-  for (const Light& light : lights) {
-    for (std::size_t b = 0; b < radiance.size(); ++b) radiance[b] += light.radiance(b);
-  }
-  return radiance;
-}
-
-std::vector<Light> aimedLights(std::span<const Light> lights) {
-  std::vector<Light> aimed;
-  std::ranges::copy_if(lights, std::back_inserter(aimed),
-                       [](const Light& light) { return light.shines() && !light.isAllRound(); });
-  return aimed;
 }
 
 std::string nextName(const std::string& word,

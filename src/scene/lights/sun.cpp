@@ -137,10 +137,9 @@ SolarPosition standingOf(const Vec3& toward, Up up) {
           turned(degreesOf(std::atan2(toward.x, to_north)))};
 }
 
-void Sun::settle(Up up) {
+void SunPlace::settle(Up up) {
   if (!isFinite(toward)) throw InputError("sun: toward is not three finite numbers");
-  const bool by_angles = elevation || azimuth || !time.empty();
-  if (toward != Vec3(0.0) && !by_angles) return;
+  if (toward != Vec3(0.0) && !hasAngles()) return;
   if (!time.empty()) {
     const SolarPosition stands = solarPosition(latitude, longitude, time);
     elevation = stands.elevation;
@@ -163,10 +162,8 @@ void Sun::settle(Up up) {
   const double to_north = std::cos(e) * std::cos(a);
   const Vec3 direction =
       up == Up::z ? Vec3(to_east, to_north, std::sin(e)) : Vec3(to_east, std::sin(e), -to_north);
-  const double disc = diameter;
-  *this = Sun();
+  *this = SunPlace();
   toward = direction;
-  diameter = disc;
 }
 
 }  // namespace radiosity

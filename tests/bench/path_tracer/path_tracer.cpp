@@ -23,9 +23,10 @@ namespace {
 
 struct Arguments {
   std::string input;
-  std::string blocks;   ///< CSV
-  std::string picture;  ///< EXR; empty: none
-  std::string camera;   ///< as parseCamera() reads it; empty: the scene's first
+  std::string blocks;               ///< CSV
+  std::string picture;              ///< EXR; empty: none
+  std::string camera;               ///< as parseCamera() reads it; empty: the scene's first
+  std::vector<std::string> lights;  ///< more of them, as lightOf() reads them
   int size = 256;
   int block = 8;
   std::uint32_t paths = 64;
@@ -109,7 +110,7 @@ class Tracing {
         const Vec3 ray = glm::normalize(view_.rayThrough(x * side + at.x, y * side + at.y));
         const PathLight light = tracePath(scene_, view_.eye, ray, arguments_.options, points);
         sum.add(r, light);
-        if (light.misses && scene_.sky() == Vec3(0.0)) continue;
+        if (light.misses && !scene_.hasSky()) continue;
         const std::size_t pixel = std::size_t(at.y) * std::size_t(side) + std::size_t(at.x);
         pixels[pixel] += light.radiance;
         counts[pixel] += 1;
@@ -145,7 +146,10 @@ void trace(const Arguments& arguments) {
   }
   setThreads(arguments.threads);
   Progress quiet;
-  const Scene scene = loadScene(arguments.input);
+  Scene scene = loadScene(arguments.input);
+  SceneOverrides given;
+  for (const std::string& light : arguments.lights) addLight(given.lights, lightOf(light));
+  applyOverrides(scene, given);
   if (scene.cameras.empty() && arguments.camera.empty()) {
     throw InputError(arguments.input + ": the scene has no camera; give one with --camera");
   }
@@ -168,6 +172,8 @@ void addTrace(CLI::App& app, Arguments& a) {
   sub->add_option("--blocks", a.blocks, "CSV of the blocks");
   sub->add_option("--picture", a.picture, "The picture, .exr");
   sub->add_option("--camera", a.camera, "eye=X,Y,Z;target=X,Y,Z; default: the scene's first");
+  sub->add_option("--light", a.lights, "As the program takes it, e.g. cie-sky,10000lx")
+      ->allow_extra_args(false);
   sub->add_option("--size", a.size, "Pixels a side")->check(CLI::Range(8, 4096));
   sub->add_option("--block", a.block, "Pixels a side of a block")->check(CLI::Range(1, 64));
   sub->add_option("--paths", a.paths, "Of a block; a power of two");

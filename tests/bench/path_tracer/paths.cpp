@@ -79,7 +79,7 @@ PathLight tracePath(const TracedScene& scene, const Vec3& eye, const Vec3& direc
   TracedHit hit = scene.hit(eye, direction, 0, true);
   if (hit.triangle == kNone) {
     light.misses = true;
-    light.radiance = scene.sky();
+    light.radiance = scene.sky(direction, true);
     return light;
   }
   const Vec3 shines = scene.triangle(hit.triangle).side[hit.side].emission;
@@ -111,7 +111,7 @@ PathLight tracePath(const TracedScene& scene, const Vec3& eye, const Vec3& direc
     }
     hit = scene.hit(place.at, along, 0, false);
     if (hit.triangle == kNone) {
-      light.radiance += weight * scene.sky();
+      light.radiance += weight * scene.sky(along, false);
       return light;
     }
     const TracedSide& side = scene.triangle(hit.triangle).side[hit.side];

@@ -70,8 +70,8 @@ TracedScene::TracedScene(const PatchMesh& mesh, const PatchMaterials& materials,
       triangles_.push_back(t);
     }
   }
-  const std::vector<double> sky = background(materials.lights, 3);
-  if (!sky.empty()) sky_ = {sky[0], sky[1], sky[2]};
+  sky_ = Background(materials.lights, 3);
+  whole_sky_ = Background(materials.lights, 3, true);
   lamps_ = aimedLights(materials.lights);
   findLights();
   build();

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -68,7 +69,13 @@ class TracedScene {
   const TracedTriangle& triangle(Index t) const { return triangles_[t]; }
   /// Metres by which rays start off a surface.
   double lift() const { return lift_; }
-  const Vec3& sky() const { return sky_; }
+  bool hasSky() const { return !whole_sky_.empty(); }
+  /// Radiance where nothing stands; `whole`: with what is among the lamps, too.
+  Vec3 sky(const Vec3& toward, bool whole) const {
+    std::array<double, 3> sum{};
+    (whole ? whole_sky_ : sky_).add(glm::normalize(toward), 1, sum);
+    return {sum[0], sum[1], sum[2]};
+  }
   /// Metres: longer than the scene.
   double beyond() const { return beyond_; }
 
@@ -85,7 +92,8 @@ class TracedScene {
   std::vector<TracedTriangle> triangles_;
   std::vector<Shining> shining_;
   Vec3 middle_{0.0};
-  Vec3 sky_{0.0};  ///< radiance
+  Background sky_;
+  Background whole_sky_;
   std::vector<Light> lamps_;
   double lift_ = 0;
   double beyond_ = 0;
