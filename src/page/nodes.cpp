@@ -6,7 +6,7 @@
 #include <numeric>
 #include <span>
 
-#include "base/made.h"
+#include "matrix/estimated_entries.h"
 #include "radiosity/matrix_functions.h"
 #include "radiosity/page.h"
 #include "radiosity/spelling.h"
@@ -54,10 +54,12 @@ PageNodes pageNodes(const std::string& name, const PatchMesh& mesh, const FormFa
   NamedFactors sums = factorsBetweenNodes(mesh, factors, kNodesOfMany, progress);
   nodes.of_patch = std::move(sums.row_of);
   nodes.matrix = sums.matrix;
-  if (const auto* rows = dynamic_cast<const RowMatrix*>(sums.matrix.get())) {
-    nodes.matrix = std::make_shared<SymmetricMatrix>(symmetrized(*rows));
-  }
   nodes.fronts = meansOf(factors.fronts, factors.matrix->area(), nodes);
+  if (const auto* rows = dynamic_cast<const RowMatrix*>(sums.matrix.get())) {
+    const auto merged = std::make_shared<SymmetricMatrix>(symmetrized(*rows));
+    closeRows(*merged, estimatedEntries(*merged), nodes.fronts, progress);
+    nodes.matrix = merged;
+  }
   nodes.error = std::move(sums.error);
   return nodes;
 }

@@ -23,8 +23,8 @@ struct PageNodes {
 
 /// Patches themselves if there are form factors between all pairs of these and no more than
 /// kMostPageNodes; else about kNodesOfMany clusters of patches, over which form factors are summed:
-/// between these reciprocity holds, of two estimates of a pair by their mean. Errors: InputError
-/// that starts with `name` if pairs of patches have two estimates; Cancelled.
+/// between these reciprocity holds, and rows keep their sums (closeRows()). Errors: InputError that
+/// starts with `name` if pairs of patches have two estimates; Cancelled.
 PageNodes pageNodes(const std::string& name, const PatchMesh& mesh, const FormFactors& factors,
                     Progress& progress);
 

@@ -9,8 +9,7 @@
 namespace radiosity {
 
 double mostImbalance(const FormFactors& factors) {
-  return std::max({traitsOf(factors.method).imbalance, factors.report.error_figure,
-                   factors.report.cut.error()});
+  return std::max(traitsOf(factors.method).imbalance, factors.report.error_figure);
 }
 
 std::string imbalanceCure(FormFactorMethod method) { return traitsOf(method).cure(); }

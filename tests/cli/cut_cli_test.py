@@ -74,9 +74,7 @@ class CutCliTest(CliTest):
             self.assertAlmostEqual(sum(values), 1, delta=1e-6)  # rounding
 
     def test_is_refused_where_pairs_are_needed(self):
-        for command, output in [("factors", "f.mtx"), ("view", "page.html")]:
-            with self.subTest(command):
-                self.refuse(command, SCENE, *CUT, "-o", output, words=["--method exact"])
+        self.refuse("factors", SCENE, *CUT, "-o", "f.mtx", words=["--method exact"])
 
     def test_is_replaced_where_a_method_may_be_chosen_and_pairs_are_needed(self):
         self.run_program("factors", SCENE, *CUT, "-o", "cut.h5")

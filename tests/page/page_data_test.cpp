@@ -265,7 +265,7 @@ TEST(PageData, FormFactorsWithoutPairsAreSummedOverNodes) {
     off += area[k] * std::abs(sum - of_node[k] / area[k]);
     all += of_node[k];
   }
-  EXPECT_LT(off, 0.01 * all);  // rows that are cut are reciprocal to some per mille
+  EXPECT_LT(off, 1e-3 * all);  // 16 bits; all rows are within reach in a closed room
 
   const auto lamp = std::ranges::find_if(page.header["materials"], [](const nlohmann::json& m) {
     return m["emission"][0].get<double>() > 0;
@@ -293,7 +293,6 @@ TEST(PageData, LightIsWithinThePagesErrorBound) {
   EXPECT_EQ(light["strength"], (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(light["radiance"], (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(made.page().header["closed"], false);
-  EXPECT_EQ(made.page().header["sees_out"], true);
   const std::vector<double> f = made.page().factors();
   const auto by_sky = made.page().floats("light_0");
   EXPECT_GT(*std::max_element(by_sky.begin(), by_sky.end()), 0.3f);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "formfactor/closed_rows.h"
 #include "formfactor/known_entries.h"
 #include "formfactor/row_accounts.h"
+#include "matrix/estimated_entries.h"
 #include "matrix/shared_rows.h"
 #include "mesh/patches/canonical_order.h"
 #include "radiosity/closure.h"
@@ -54,35 +54,10 @@ FormFactors emptyAccounts(std::size_t n) {
   return result;
 }
 
-/// The smallest area above 0.
-double smallestOf(std::span<const double> area) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const double a : area) smallest = a > 0 ? std::min(smallest, a) : smallest;
-  return smallest;
-}
-
-/// The errors of a merged matrix's entries: their squares go with the exchange area, as in van
-/// Leersum's closure (closure.h); known ones have none. The unit, the `smallest` area, keeps errors
-/// of F below 1.
-UncertainEntries uncertainEntries(const SymmetricMatrix& matrix, double smallest,
-                                  const KnownEntries& known) {
-  const std::size_t n = matrix.size();
-  UncertainEntries uncertain(n, matrix.scratch());
-  parallelFor(n, 1, [&](std::size_t k) {
-    const SymmetricMatrix::UpperEntries upper = matrix.upperEntries(k);
-    const double share = smallest / matrix.area()[matrix.order()[k]];
-    std::vector<Index> later;
-    std::vector<double> errors;
-    for (std::size_t m = 0; m < upper.positions.size(); ++m) {
-      if (upper.positions[m] == k) continue;
-      const Index other = matrix.order()[upper.positions[m]];
-      if (known.rowAt(matrix.order()[k]) != nullptr || known.rowAt(other) != nullptr) continue;
-      later.push_back(upper.positions[m]);
-      errors.push_back(std::sqrt(upper.factors[m] * share));
-    }
-    uncertain.setRow(k, later, errors);
-  });
-  return uncertain;
+std::vector<std::uint8_t> flagsOfKnown(const SymmetricMatrix& matrix, const KnownEntries& known) {
+  std::vector<std::uint8_t> flags(matrix.size(), 0);
+  for (const Index i : matrix.order()) flags[i] = known.rowAt(i) != nullptr ? 1 : 0;
+  return flags;
 }
 
 /// The errors of the sky of open rows: an eye may miss as much as it may leak. So entries, which
@@ -103,10 +78,11 @@ void symmetrize(std::shared_ptr<const RowMatrix> rows, const KnownEntries& known
   result.matrix = merged;
   rows.reset();
   // The sums to restore are the raw ones: with backs and, in an open row, the sky they are 1.
-  const double smallest = smallestOf(merged->area());
+  const double smallest = smallestArea(merged->area());
   const std::vector<double> sky_errors = skyErrors(closed, smallest, result);
-  result.report.closure = closeRows(*merged, uncertainEntries(*merged, smallest, known),
-                                    result.fronts, progress, kTolerance, {result.sky, sky_errors});
+  result.report.closure =
+      closeRows(*merged, estimatedEntries(*merged, flagsOfKnown(*merged, known)), result.fronts,
+                progress, kTolerance, {result.sky, sky_errors});
   result.report.symmetrized = true;
   const std::vector<double> sums = merged->rowSums();
   for (std::size_t i = 0; i < sums.size(); ++i) {

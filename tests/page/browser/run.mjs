@@ -14,7 +14,7 @@ if (!program) {
 }
 /** Parts of the page that node runs by themselves. */
 const modules = [
-  ...["factors", "solver", "relight", "vector_product", "session", "within"],
+  ...["factors", "solver", "relight", "vector_product", "session"],
   ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks", "gather_batch", "pace"],
   "false_colour",
 ];
