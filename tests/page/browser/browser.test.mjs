@@ -5,7 +5,7 @@ import { statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import {
-  apart, colours, folder, half, irradiance, launch, open, pageData, program, results, style,
+  apart, colours, folder, half, irradiance, launch, open, pageData, program, relativeError, results, style,
 } from "./support.mjs";
 
 let browser, page, said;
@@ -230,16 +230,18 @@ test("where patches are summed to nodes sliders give the light of radiosity solv
   assert.ok(Math.abs(there * area - power) <= 1e-9 * power && Math.abs(back * other - powerBack) <= 1e-9 * power);
   assert.match(await shared.locator("#run-facts").textContent(), /as it does for its node/);
 
-  for (const [name, what, value] of [
-    ["lamp", "strength", 40],
-    ["parquet", "reflectance", 0.1],
-    ["plaster", "reflectance", 0.9],
+  // A lamp's light is known patch by patch. What is reflected follows its node: to half a percent, of which a picture
+  // shows nothing.
+  for (const [name, what, value, most] of [
+    ["lamp", "strength", 40, 1e-4],
+    ["parquet", "reflectance", 0.1, 5e-3],
+    ["plaster", "reflectance", 0.9, 5e-3],
   ]) {
     await range(slider(name, what), value);
     const [shown, expected] = await both();
-    shown.forEach((x, k) =>
-      assert.ok(Math.abs(x - expected[k]) <= 1e-3 * expected[k], `${name}: ${x}, not ${expected[k]}`),
-    );
+    const off = relativeError(shown, expected);
+    console.log(name, off);
+    assert.ok(off < most, `${name}: off by ${off}`);
   }
   assert.deepEqual(words, []);
   await shared.close();

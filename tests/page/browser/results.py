@@ -38,7 +38,8 @@ def main():
         factors = file["form_factors"]
         out["area"] = factors["area"][()].tolist()
         out["surface"] = [factors["surface_names"][()][k].decode() for k in factors["surface"][()]]
-        out["rowSum"] = factors["row_sum"][()].tolist()
+        if "row_sum" in factors:  # not of rows that are cut
+            out["rowSum"] = factors["row_sum"][()].tolist()
         out["history"] = light["summary/residual_history"][()].tolist()
         if "--dense" in sys.argv:
             matrix = dense_matrix(factors)

@@ -10,7 +10,6 @@ const solver = await module("solver");
 const { Relight } = await module("relight");
 const { VectorProduct } = await module("vector_product");
 const { Session } = await module("session");
-const { LightWithin } = await module("within");
 const { directIrradiance, materialsOfNodes, nodeMeans, patchIrradiance, radiosityOf, withMaterials } = await module("light");
 const { TriangleTree } = await module("bvh");
 const { readContainer } = await module("container");
@@ -187,7 +186,6 @@ test("Southwell's first shot is the lamp's light, and what waits is its residual
   assert.ok(Math.abs(solver.southwellResidual(system, state) - residual) < 1e-9);
 });
 
-const dark = new Float32Array(data.emission.length);
 const materialsWith = ({ emission, reflectance }) => ({ emission, reflectance, direct: dark });
 
 function session(withKernel = true) {
