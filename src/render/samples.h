@@ -38,7 +38,8 @@ inline bool shadesWhole(const ItemBuffer& items, const PatchField& field, const 
 /// Calls pixel(x, y, first sample) ... in tiles on all threads. `Pixel` is a class with
 ///   void begin();                                        a new pixel
 ///   void sample(Seen, const Shade&);                     S^2 times; values for Seen::front alone;
-///                                                        for Seen::nothing `value` is the direction
+///                                                        for Seen::nothing `value` is the
+///                                                        direction
 ///   void end(int x, int y);                              the pixel is complete
 /// One Pixel is made per tile by make(tile); pixels come row by row, samples always in one order.
 template <class Make>
