@@ -32,7 +32,7 @@ using h5::SizeCounter;
 
 constexpr const char* kFormat = "radiosity results";
 /// Raised whenever an older program could misread the file.
-constexpr std::int32_t kFormatVersion = 8;
+constexpr std::int32_t kFormatVersion = 7;
 
 /// The arrays of the mesh to which /form_factors links, so that a reader needs no other group.
 constexpr std::array kMeshLinks = {"normal", "centroid", "surface", "surface_names"};
@@ -160,6 +160,12 @@ void checkHead(const h5::InputFile& file, const InputGroup& root) {
     throw InputError(fmt::format(
         "{}: has format version {}, this program reads {}; make the file again with this program",
         file.path(), version, kFormatVersion));
+  }
+  if (root.has("mesh") && root.group("mesh").has("clusters")) {
+    throw InputError(fmt::format(
+        "{}: its patches share unknowns, of which this program knows nothing; make the file again "
+        "with this program",
+        file.path()));
   }
   file.requireOwnObjects();
 }

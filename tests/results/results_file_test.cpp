@@ -253,6 +253,9 @@ TEST_F(ResultsFile, NamesFieldsThatAnotherProgramChanged) {
     SCOPED_TRACE(part);
     expectInputError(part);
   };
+  // A file of before December 2026, of a scene with more planar pieces than patches asked for.
+  expectAfter([](Edit& e) { e.vector("/mesh/clusters", H5T_NATIVE_UINT, 3); },
+              "its patches share unknowns");
   expectAfter([](Edit& e) { e.attribute("/", "format_version", H5T_NATIVE_INT, 99); },
               "format version 99");
   expectAfter([](Edit& e) { e.remove("/form_factors/data"); }, "/form_factors/data is missing");
