@@ -116,11 +116,6 @@ LightOnPatches::Means LightOnPatches::meansOfAimed(std::span<const Light> lights
   return means;
 }
 
-LightFall LightOnPatches::fromAround(std::span<const Light> lights, std::span<const double> open,
-                                     int bands, Progress& progress) {
-  return fallOf(meansFromAround(lights, open, bands, progress));
-}
-
 LightFall LightOnPatches::aimed(std::span<const Light> lights, int bands, Progress& progress) {
   return fallOf(meansOfAimed(lights, bands, progress));
 }

@@ -26,15 +26,11 @@ class LightOnPatches {
   explicit LightOnPatches(const PatchMesh& mesh);
   ~LightOnPatches();
 
-  /// Means over the patches of the lights that come from where nothing stands, but for bright spots
-  /// of skies. `open`: by patch, the share of what leaves it that meets nothing, of which an
-  /// exact row's account may be a little below 0. Errors: InputError if shares are not those of the
-  /// mesh. Throws Cancelled.
-  LightFall fromAround(std::span<const Light> lights, std::span<const double> open, int bands,
-                       Progress& progress);
   /// Means over the patches of aimed lights, and of bright spots of skies. Throws Cancelled.
   LightFall aimed(std::span<const Light> lights, int bands, Progress& progress);
-  /// The sum of both.
+  /// The same, and of the lights that come from where nothing stands. `open`: by patch, the share
+  /// of what leaves it that meets nothing, of which an exact row's account may be a little below 0.
+  /// Errors: InputError if shares are not those of the mesh. Throws Cancelled.
   LightFall all(std::span<const Light> lights, std::span<const double> open, int bands,
                 Progress& progress);
 

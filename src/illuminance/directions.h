@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "radiosity/illuminance.h"
+#include "scene/up_vector.h"
 
 namespace radiosity {
 
 inline constexpr std::size_t kCubeFaces = 6;
-
-inline Vec3 upVector(Up up) { return up == Up::y ? Vec3(0, 1, 0) : Vec3(0, 0, 1); }
 
 /// The normals of a small cube, x_plus first.
 std::array<Vec3, kCubeFaces> cubeNormals();

@@ -8,6 +8,7 @@
 
 #include "base/luminance.h"
 #include "radiosity/light.h"
+#include "scene/up_vector.h"
 
 namespace radiosity {
 
@@ -189,7 +190,7 @@ double airMass(double zenith) {
 }  // namespace
 
 void OpenSky::settle(Up scene_up) {
-  if (!up) up = scene_up == Up::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+  if (!up) up = upVector(scene_up);
   if (hasAngles()) SunPlace::settle(scene_up);
 }
 

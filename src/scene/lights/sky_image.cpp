@@ -12,6 +12,7 @@
 #include "radiosity/light.h"
 #include "scene/lights/light_text.h"
 #include "scene/texture.h"
+#include "scene/up_vector.h"
 
 namespace radiosity {
 
@@ -187,7 +188,7 @@ double ImageSky::ofSpots(std::size_t band, std::size_t bands) const {
 }
 
 void ImageSky::settle(Up scene_up) {
-  if (!up) up = scene_up == Up::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+  if (!up) up = upVector(scene_up);
 }
 
 void ImageSky::validate() const {
