@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/processor_clock.h"
 #include "base/timed_progress.h"
+#include "formfactor/rays/ray_model.h"
 #include "radiosity/spelling.h"
 
 namespace radiosity {
@@ -40,6 +41,10 @@ constexpr double kUnpreparedSeconds = 1;
 /// rows that are cut take their place, but for a tolerance below this, which asks for more rays
 /// than these have.
 constexpr std::size_t kManyPatches = 20'000;
+/// Of fewer patches, where pairs take more rays than these, and so many times those of cuts.
+/// Counts of rays are the same on any machine.
+constexpr double kManyRays = 3e7;
+constexpr double kTimesForPairs = 3;
 constexpr double kFinestCut = 5e-3;
 
 std::string secondsText(double seconds) {
@@ -52,6 +57,18 @@ std::string secondsText(double seconds) {
 double secondsExactMayTake(const FormFactorOptions& options, double other_seconds) {
   if (options.tolerance) return other_seconds;
   return std::max(kTimesForAccuracy * other_seconds, kSecondsForAccuracy);
+}
+
+Chosen planned(FormFactorMethod method, const PatchMesh& mesh, const FormFactorOptions& options,
+               Progress& progress) {
+  Chosen chosen{prepareMethod(method, mesh, options), {}};
+  chosen.plan = chosen.method->plan(progress);
+  return chosen;
+}
+
+/// Of a method that casts rays, once it is planned.
+double foreseenRays(const PreparedMethod& method) {
+  return method.roomForExactRows().value_or(RoomForExactRows()).work / kExactWorkARay;
 }
 
 /// Nothing if planning takes longer than `seconds`.
@@ -86,10 +103,18 @@ std::string otherReason(const std::optional<FormFactorPlan>& exact, bool fits,
 
 }  // namespace
 
-FormFactorMethod besideExact(const PatchMesh& mesh, const FormFactorOptions& options) {
-  const bool many = mesh.size() >= kManyPatches && !options.needs_pairs &&
-                    options.toleranceOf(FormFactorMethod::cut) >= kFinestCut;
-  return many ? FormFactorMethod::cut : FormFactorMethod::rays;
+Chosen planBesideExact(const PatchMesh& mesh, const FormFactorOptions& options,
+                       Progress& progress) {
+  const bool may_cut =
+      !options.needs_pairs && options.toleranceOf(FormFactorMethod::cut) >= kFinestCut;
+  if (may_cut && mesh.size() >= kManyPatches) {
+    return planned(FormFactorMethod::cut, mesh, options, progress);
+  }
+  Chosen rays = planned(FormFactorMethod::rays, mesh, options, progress);
+  if (!may_cut || foreseenRays(*rays.method) < kManyRays) return rays;
+  Chosen cut = planned(FormFactorMethod::cut, mesh, options, progress);
+  const bool pays = foreseenRays(*cut.method) * kTimesForPairs < foreseenRays(*rays.method);
+  return pays ? std::move(cut) : std::move(rays);
 }
 
 /// If planning exact takes long beside what rays take, exact is not the faster one: a plan takes
@@ -105,8 +130,7 @@ Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Pro
     exact.plan.reason = fmt::format("it takes {}", secondsText(exact.plan.seconds));
     return exact;
   }
-  Chosen other{prepareMethod(besideExact(mesh, options), mesh, options), {}};
-  other.plan = other.method->plan(progress);
+  Chosen other = planBesideExact(mesh, options, progress);
   const double most = secondsExactMayTake(options, other.plan.seconds);
   const bool prepared = exact.method->secondsPreparing() > 0;
   const double least = prepared ? 2 * kSecondSeconds : kUnpreparedSeconds / kPlanShare;

@@ -17,11 +17,11 @@ struct Chosen {
 Chosen chooseMethod(const PatchMesh& mesh, const FormFactorOptions& options, Progress& progress);
 
 /// What takes the place of exact form factors where these take too long: rays, or rows that are cut
-/// where patches are many.
-FormFactorMethod besideExact(const PatchMesh& mesh, const FormFactorOptions& options);
+/// where patches are many or rays take far longer.
+Chosen planBesideExact(const PatchMesh& mesh, const FormFactorOptions& options, Progress& progress);
 
-/// Chosen automatically, exact is given up, and besideExact() takes its place, where it takes far
-/// longer than was foreseen: then nothing. `seconds`: those foreseen.
+/// Chosen automatically, exact is given up, and planBesideExact() takes its place, where it takes
+/// far longer than was foreseen: then nothing. `seconds`: those foreseen.
 std::optional<FormFactors> computeInTime(const PreparedMethod& exact, double seconds,
                                          Progress& progress, RowJournal* journal);
 /// The reason for that.

@@ -124,7 +124,7 @@ namespace {
 /// Form factors in place of exact ones that were given up after `seconds`.
 FormFactors computeInstead(const FormFactorPlan& exact, double seconds, Progress& progress) {
   FormFactorOptions options = exact.prepared->options;
-  options.method = besideExact(*exact.prepared->mesh, options);
+  options.method = planBesideExact(*exact.prepared->mesh, options, progress).plan.method;
   FormFactorPlan plan = planFormFactors(exact.prepared->mesh, options, progress);
   plan.reason = overrunText(exact.seconds, seconds);
   FormFactors result = computeFormFactors(plan, progress);

@@ -15,10 +15,12 @@ constexpr double kBalanced = 1e-5;
 constexpr int kBalanceSteps = 20;
 /// A step must leave less than this share of what was off. Few patches that see each other alone
 /// cannot be balanced, since their rays differ: each step would only scale them further.
-constexpr double kProgress = 0.8;
-/// What a patch counts for is within this and its inverse, and rests on so many hits: one that
-/// hardly any row has hit stays about as it is.
-constexpr double kMostCounts = 2;
+constexpr double kProgress = 0.97;
+/// What a patch counts for is within these, and rests on so many hits: one that hardly any row has
+/// hit stays about as it is. A patch behind others takes its part of what ends on a node that it
+/// shares with them, until it counts for next to nothing.
+constexpr double kFewestCounts = 1.0 / 64;
+constexpr double kMostCounts = 4;
 constexpr double kCredibleHits = 16;
 /// A row that falls below this share of its sum has fits that what patches count for upsets.
 constexpr double kSound = 0.5;
@@ -130,6 +132,13 @@ std::vector<double> columnSums(const CutParts& parts) {
   return sums;
 }
 
+/// What a patch is to count for, if with what it counts for now rows bring `column` from it and
+/// not `wanted`. Slopes may take light from it: the less it counts for, the less they do.
+double countsOf(const PatchTree::Patch& patch, double column, double wanted, double credible) {
+  const double times = column < 0 ? 0.5 : (wanted + credible) / (column + credible);
+  return std::clamp(patch.counts * times, kFewestCounts, kMostCounts);
+}
+
 /// The power that a hit brings, on average.
 double powerOfAHit(const CutParts& parts) {
   double power = 0;
@@ -195,8 +204,7 @@ CutBalance balanceCut(CutParts& parts, std::span<const double> sums, Progress& p
     last = balance.after;
     for (std::size_t k = 0; k < patches.size(); ++k) {
       const double wanted = patches[k].area * sums[k];
-      const double times = (wanted + credible) / (std::max(0.0, columns[k]) + credible);
-      parts.tree.setCounts(k, std::clamp(patches[k].counts * times, 1 / kMostCounts, kMostCounts));
+      parts.tree.setCounts(k, countsOf(patches[k], columns[k], wanted, credible));
     }
     scaleRows(parts, sums);
   }

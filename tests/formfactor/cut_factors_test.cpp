@@ -160,6 +160,22 @@ TEST(Cut, GivesNoPatchMoreThanShines) {
   EXPECT_LT(worst, 1.33);
 }
 
+// Floor under a sheet sees next to nothing but the sheet's back, and yet lies in nodes with the
+// open floor: it must not take its part of the light that ends there.
+TEST(Cut, BalancesPatchesThatOthersHide) {
+  test::SceneBuilder builder;
+  builder.level(builder.surface("floor"), 0, 0, 4, 4, 0);
+  builder.level(builder.surface("sheet"), 0.55, 0.55, 2.45, 3.45, 0.02);
+  const Index wall = builder.surface("wall");
+  builder.face(wall, {{0, 0, 0}, {0, 4, 0}, {0, 4, 3}, {0, 0, 3}});
+  builder.face(wall, {{0, 4, 0}, {4, 4, 0}, {4, 4, 3}, {0, 4, 3}});
+  const PatchMesh mesh = test::meshOf(builder.scene(), 6000);
+  const FormFactors f = test::computed(mesh, byCuts(0.1));
+  EXPECT_GT(f.report.cut.unbalanced_before, 0.05);
+  // It is .002; .06 where each patch counts for half or more.
+  EXPECT_LT(f.report.cut.unbalanced, 0.01);
+}
+
 TEST(Cut, HasTheSameBitsForAnyThreads) {
   const PatchMesh mesh = test::meshOf(test::dataScene("cornell-box-closed"), 400);
   setThreads(1);
