@@ -28,10 +28,6 @@ constexpr std::array<double, 10> kOpenings{1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125,
 /// Nodes are opened beyond what the tolerance asks for while that takes no more than this many
 /// times the entries: where each ray of a row ends elsewhere, cutting saves next to nothing.
 constexpr double kFewEntries = 1.25;
-/// Sources are tried relative to all light, of which they bring a part: it is to be this much
-/// better, since what they lose is lost on one side. (With 1 the atrium of sponza under a sky has
-/// .56% of its light on no account.)
-constexpr double kOfSources = 0.5;
 using OfTrials = std::array<double, kTrials>;
 
 struct SampleRow {
@@ -188,8 +184,7 @@ CutPlan planCuts(const PatchMesh& mesh, const RayScene& scene, const PatchTree& 
   TrialLights lights = trialLights(mesh, scene, tree, options.exact_rows, options.onlyForSources(),
                                    options.seed, progress);
   return Trials(scene, tree, std::move(lights), progress)
-      .plan(options.toleranceOf(FormFactorMethod::cut) *
-            (options.onlyForSources() ? kOfSources : 1.0));
+      .plan(options.toleranceOf(FormFactorMethod::cut));
 }
 
 }  // namespace radiosity
