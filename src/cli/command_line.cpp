@@ -9,6 +9,7 @@
 
 #include "cli/command_texts.h"
 #include "cli/help_formatter.h"
+#include "cli/manuals.h"
 #include "cli/options.h"
 #include "cli/request.h"
 #include "cli/validators.h"
@@ -156,9 +157,32 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   return sub;
 }
 
+/// What is asked of the program itself, without a subcommand.
+void addProgramOptions(CLI::App& app) {
+  app.set_help_flag("-h", "Tell the names of the options");
+  app.set_help_all_flag("--help", "Tell what each option does, its units and its default");
+  app.set_version_flag("--version", "radiosity " RADIOSITY_VERSION, "Tell the version");
+  app.add_option_function<std::string>(
+         "--manuals",
+         [&app](const std::string& folder) {
+           writeManuals(app, folder);
+           throw CLI::Success();
+         },
+         "Write manual pages and completions of bash, zsh and fish, in folders as below "
+         "PREFIX/share; for you alone: ~/.local/share")
+      ->option_text("FOLDER");
+  app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.footer(
+      "Exit codes: 0 done; 1 the run failed or did not converge; 2 bad input or arguments.\n"
+      "Help on one: radiosity help render\n\n"
+      "Example:\n"
+      "  radiosity render data/cornell-box.obj -o cornell.png");
+}
+
 /// Checks the subcommand: for a typo CLI11 only says "A subcommand is required", while we name the
 /// word and suggest the right one.
-void checkCommandWord(int argc, char** argv) {
+void checkCommandWord(const CLI::App& program, int argc, char** argv) {
   std::array<std::string, kCommands.size()> names;
   std::transform(kCommands.begin(), kCommands.end(), names.begin(), commandName);
   const std::string list =
@@ -171,7 +195,9 @@ void checkCommandWord(int argc, char** argv) {
   }
   const std::string word = argv[1];
   if (std::find(names.begin(), names.end(), word) != names.end()) return;
-  if (word == "--help" || word == "-h" || word == "--version") return;
+  for (const CLI::Option* option : program.get_options()) {
+    if (option->check_name(word)) return;
+  }
   if (word.starts_with('-')) {
     throw InputError(fmt::format("{}: options go after the subcommand ({})", word, list));
   }
@@ -196,7 +222,8 @@ std::optional<int> help(int argc, char** argv, Request& request) {
 
 /// The message, in one line, for an error of CLI11.
 std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
-  const std::string command = "radiosity " + sub.get_name();
+  const std::string command =
+      sub.get_parent() == nullptr ? "radiosity" : "radiosity " + sub.get_name();
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     const std::vector<std::string> extras = sub.remaining();
     const std::string word = extras.empty() ? std::string() : extras.front();
@@ -235,35 +262,26 @@ std::string explain(const CLI::ParseError& error, const CLI::App& sub) {
 
 std::optional<int> parseCommandLine(int argc, char** argv, Request& request) {
   if (argc > 1 && argv[1] == std::string("help")) return help(argc, argv, request);
-  checkCommandWord(argc, argv);
   CLI::App app(
-      "radiosity: light a scene by the matrix method. Scene -> patches -> form factors\n"
+      "Light a scene by the matrix method. Scene -> patches -> form factors\n"
       "-> radiosity -> picture; each subcommand runs the stages that are missing, up to its own.");
   app.name("radiosity");
-  app.set_version_flag("--version", "radiosity " RADIOSITY_VERSION);
-  app.require_subcommand(1);
-  app.formatter(std::make_shared<HelpFormatter>());
-  app.footer(
-      "Exit codes: 0 done; 1 the run failed or did not converge; 2 bad input or arguments.\n"
-      "Help on one: radiosity help render\n\n"
-      "Example:\n"
-      "  radiosity render data/cornell-box.obj -o cornell.png");
+  addProgramOptions(app);
+  checkCommandWord(app, argc, argv);
   std::array<CLI::App*, kCommands.size()> subs{};
   std::transform(kCommands.begin(), kCommands.end(), subs.begin(),
                  [&](Command command) { return addCommand(app, request, command); });
   request.arguments.assign(argv, argv + argc);
-  const auto chosen = [&]() {
-    for (std::size_t k = 0; k < subs.size(); ++k) {
-      if (argv[1] == std::string(commandName(kCommands[k]))) return k;
-    }
-    return std::size_t(0);
-  }();
+  const auto chosen = std::size_t(
+      std::find_if(kCommands.begin(), kCommands.end(),
+                   [&](Command command) { return std::string(argv[1]) == commandName(command); }) -
+      kCommands.begin());
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    throw InputError(explain(error, *subs[chosen]));
+    throw InputError(explain(error, chosen < subs.size() ? *subs[chosen] : app));
   }
   request.command = kCommands[chosen];
   request.given.applyTo<SceneOverrides>(request.scene);
