@@ -104,6 +104,10 @@ heavy_first(cli_sources ${cli_sources})
 add_executable(radiosity_cli ${cli_sources})
 set_target_properties(radiosity_cli PROPERTIES OUTPUT_NAME radiosity BUILD_RPATH "$ORIGIN")
 target_link_libraries(radiosity_cli PRIVATE radiosity_inside room_cli)
+# The program writes its manual pages and completions.
+add_custom_command(TARGET radiosity_cli POST_BUILD
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${PROJECT_BINARY_DIR}/share
+  COMMAND radiosity_cli --manuals ${PROJECT_BINARY_DIR}/share VERBATIM)
 # No inner loop is in these: optimising them takes a third of their compiling and gains nothing.
 foreach(target IN ITEMS radiosity_cli radiosity_scene radiosity_scene_gltf radiosity_scene_json
         radiosity_scene_three_mf radiosity_scene_vtk radiosity_scene_assimp radiosity_results radiosity_compare
@@ -136,8 +140,4 @@ else()
 endif()
 
 set_property(GLOBAL APPEND PROPERTY public_headers include/radiosity/radiosity.h)  # all together
-install(TARGETS radiosity_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-set_target_properties(radiosity_cli PROPERTIES
-                      INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-install(TARGETS radiosity_images radiosity_draco LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS radiosity_assimp RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR})
+add_subdirectory(src/cli)

@@ -63,6 +63,12 @@ class Install(unittest.TestCase):
             (root / "data").symlink_to(ROOT / "data")
             subprocess.run([root / "build/readme"], cwd=root, check=True)
             self.assertGreater((root / "lit.png").stat().st_size, 1000)
+            # Without CMake.
+            if shutil.which("pkg-config"):
+                path = {**os.environ, "PKG_CONFIG_PATH": str(next(root.glob("prefix/**/pkgconfig")))}
+                flags = subprocess.run(["pkg-config", "--cflags", "--libs", "radiosity"], env=path,
+                                       capture_output=True, text=True, check=True).stdout.split()
+                run("c++", "-std=c++20", str(root / "other/readme.cpp"), "-o", str(root / "plain"), *flags)
             version = run(str(root / "prefix/bin/radiosity"), "--version")
             self.assertIn("0.1.0", version)
             # Assimp's formats take a program beside the library.
@@ -75,6 +81,34 @@ class Install(unittest.TestCase):
             picture = f"{ROOT}/data/cornell-box.png"
             same = run(str(root / "prefix/bin/radiosity"), "compare", picture, picture)
             self.assertRegex(same, r"relative L2 difference +0\n")
+
+    def test_what_is_not_built_is_left_out_and_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            build = pathlib.Path(folder, "build")
+            prefix = pathlib.Path(folder, "prefix")
+            # A copy of the build folder in which only radiosity_cli was built, as by tools/demo.
+            for script in pathlib.Path(BUILD).rglob("cmake_install.cmake"):
+                copy = build / script.relative_to(BUILD)
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                copy.write_text(script.read_text().replace(BUILD, str(build)))
+            for name in ["radiosity", "radiosity-assimp", *pathlib.Path(BUILD).glob("libradiosity_*.so")]:
+                shutil.copy(pathlib.Path(BUILD, name), build)
+            shutil.copytree(pathlib.Path(BUILD, "share"), build / "share")
+
+            def install(*component):
+                return subprocess.run(["cmake", "--install", build, "--prefix", prefix, *component],
+                                      capture_output=True, text=True)
+
+            done = install()
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout, "not built: library; .*--target radiosity\n")
+            self.assertFalse((prefix / "include").exists())
+            self.assertTrue((prefix / "share/man/man1/radiosity-render.1").exists())
+            picture = f"{ROOT}/data/cornell-box.png"
+            subprocess.run([prefix / "bin/radiosity", "compare", picture, picture], check=True)
+            asked_for = install("--component", "library")
+            self.assertNotEqual(asked_for.returncode, 0)
+            self.assertIn("--target radiosity", asked_for.stderr)
 
 
 if __name__ == "__main__":
