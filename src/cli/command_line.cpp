@@ -12,6 +12,7 @@
 #include "cli/manuals.h"
 #include "cli/options.h"
 #include "cli/request.h"
+#include "cli/self_test.h"
 #include "cli/validators.h"
 #include "cli/words.h"
 #include "radiosity/compare.h"
@@ -162,6 +163,13 @@ void addProgramOptions(CLI::App& app) {
   app.set_help_flag("-h", "Tell the names of the options");
   app.set_help_all_flag("--help", "Tell what each option does, its units and its default");
   app.set_version_flag("--version", "radiosity " RADIOSITY_VERSION, "Tell the version");
+  app.add_flag_callback(
+      "--self-test",
+      [] {
+        selfTest();
+        throw CLI::Success();
+      },
+      "Compute what has a known answer, in seconds; exit with 1 where this installation is wrong");
   app.add_option_function<std::string>(
          "--manuals",
          [&app](const std::string& folder) {

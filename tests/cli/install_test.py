@@ -104,8 +104,15 @@ class Install(unittest.TestCase):
             self.assertRegex(done.stdout, "not built: library; .*--target radiosity\n")
             self.assertFalse((prefix / "include").exists())
             self.assertTrue((prefix / "share/man/man1/radiosity-render.1").exists())
-            picture = f"{ROOT}/data/cornell-box.png"
-            subprocess.run([prefix / "bin/radiosity", "compare", picture, picture], check=True)
+
+            def self_test():
+                return subprocess.run([prefix / "bin/radiosity", "--self-test"], capture_output=True, text=True)
+
+            self.assertEqual(self_test().returncode, 0)
+            (prefix / "lib/libradiosity_images.so").rename(prefix / "elsewhere.so")
+            broken = self_test()
+            self.assertEqual(broken.returncode, 1)
+            self.assertRegex(broken.stderr, "^radiosity: libradiosity_images.so cannot be used .*\n$")
             asked_for = install("--component", "library")
             self.assertNotEqual(asked_for.returncode, 0)
             self.assertIn("--target radiosity", asked_for.stderr)
