@@ -105,6 +105,18 @@ py::tuple csrArrays(const FactorsHandle& handle, const py::object& report) {
                                                            : rowsOf<double>(matrix, report);
 }
 
+/// F x for values (rows, columns).
+py::array product(const FactorsHandle& handle, const Array<double>& values) {
+  const ExchangeOperator& matrix = *handle.factors.matrix;
+  py::array_t<double> result({values.shape(0), values.shape(1)});
+  const std::span<double> y(result.mutable_data(), std::size_t(result.size()));
+  const int columns = int(values.shape(1));
+  const std::span<const double> x = spanOf(values);
+  const py::gil_scoped_release released;
+  matrix.product(x, columns, y);
+  return result;
+}
+
 std::shared_ptr<FactorsHandle> fromCsr(const Array<double>& data, const Array<Index>& indices,
                                        const Array<std::int64_t>& starts, const Array<double>& area,
                                        const Array<double>& sky, const Array<double>& backs,
@@ -211,6 +223,7 @@ void bindFactors(py::module_& module) {
   module.def("form_factors", &formFactors);
   module.def("unused_options", &unusedOptions);
   module.def("csr_arrays", &csrArrays);
+  module.def("product", &product);
   module.def("from_csr", &fromCsr);
   module.def("read_matrix", &readMatrix);
   module.def("table", &table);

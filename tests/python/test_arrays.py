@@ -52,6 +52,40 @@ def test_arrays_have_their_shapes_and_types(cornell):
     assert rad.form_factors(mesh, method="hemicube", resolution=16, precision="double").csr.dtype == np.float64
 
 
+def test_form_factors_are_used_as_the_matrix(cornell):
+    n = len(cornell)
+    dense = cornell.csr.toarray()
+    assert cornell.shape == (n, n)
+    assert np.array_equal(np.asarray(cornell), dense) and np.asarray(cornell).dtype == np.float32
+    assert np.array_equal(np.asarray(cornell, dtype=np.float64), dense.astype(np.float64))
+    assert np.array_equal(cornell.T.toarray(), dense.T)
+    i, j = (int(k[5]) for k in cornell.csr.nonzero())
+    some = np.array([4, 0, n - 1])
+    for key in [(i, j), (np.int64(i), -1), i, -2, slice(3, 9, 2), (slice(None), j), (i, slice(2, 7)), some,
+                (slice(1, 4), some), (some, some[::-1]), np.ix_(some, some), np.arange(n) % 3 == 0]:
+        picked, wanted = cornell[key], dense[key]
+        assert np.shape(picked) == np.shape(wanted) and np.array_equal(picked, wanted), key
+    with pytest.raises(IndexError):
+        cornell[n]
+    x = np.random.default_rng(7).random((n, 3))
+    exact = dense.astype(np.float64)
+    # Of a pair one value is stored, in single precision; the product makes the other by the areas, in
+    # double, and csr lists it in single. All is positive, so no digits are lost in sums.
+    for got, wanted in [(cornell @ x, exact @ x), (cornell @ x[:, 0], exact @ x[:, 0]),
+                        (x[:, 0] @ cornell, x[:, 0] @ exact), (x.T @ cornell, x.T @ exact)]:
+        assert got.shape == wanted.shape and got.dtype == np.float64
+        np.testing.assert_allclose(got, wanted, rtol=np.finfo(np.float32).eps)
+    product = cornell @ scipy.sparse.eye(n, format="csr")
+    assert scipy.sparse.issparse(product) and np.array_equal(product.toarray(), dense)
+    for bad in [x[1:], x[0], "text", np.full(n, np.nan)]:
+        with pytest.raises(rad.InputError, match="^x: "):
+            cornell @ bad
+    # A matrix that lists no entries has products, too.
+    cut = rad.form_factors(cornell.mesh, method="cut")
+    rows = cut @ np.ones(n)
+    np.testing.assert_allclose(rows, cut.fronts, rtol=1e-6)  # stored in single precision
+
+
 def test_outlines_are_flat_polygons_of_the_given_area(cornell):
     mesh = cornell.mesh
     for i in range(0, len(mesh), 7):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from dataclasses import dataclass
-from typing import Any, List, Optional, Sequence, Union
+from typing import Any, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import scipy.sparse
@@ -64,11 +64,17 @@ class FormFactors(Fixed):
     """F of shape (rows, rows): F[i, j] is the fraction of what leaves i that reaches j.
 
     Rows are patches of the mesh; of from_csr() those of the matrix. Made by form_factors(), from_csr() and read().
+    It is used as the matrix: F @ x and x @ F, F[i, j], F[i], F[:, j], F.T (scipy's), np.asarray(F). F @ x needs
+    no list of entries; all others make F.csr.
 
     >>> F = rad.form_factors(rad.mesh(rad.load("data/furnace-cube.obj"), patches=24))
     >>> F
     <FormFactors of 24 rows, exact>
+    >>> (F @ F.area).shape, round(float(F[3].sum()), 4)
+    ((24,), 1.0)
     """
+
+    __array_ufunc__ = None  # so that numpy leaves x @ F to __rmatmul__
 
     def __init__(self, handle: "_core.FormFactors", mesh: Optional[Mesh] = None) -> None:
         self._handle = handle
@@ -79,6 +85,40 @@ class FormFactors(Fixed):
 
     def __len__(self) -> int:
         return len(self._handle.area)
+
+    @property
+    def shape(self) -> Tuple[int, int]:
+        """(rows, rows)."""
+        return len(self), len(self)
+
+    @property
+    def T(self) -> scipy.sparse.csc_matrix:
+        """The transposed matrix: what reaches i of what leaves j. It shares its values with csr."""
+        return self.csr.T
+
+    def __matmul__(self, x: Any) -> Any:
+        """F x in float64; x: (rows,) or (rows, columns) numbers, or a sparse matrix, which gives one."""
+        if scipy.sparse.issparse(x):
+            return self.csr @ x
+        values = numbers("x", x, [(len(self),), (len(self), None)])
+        return _core.product(self._handle, values.reshape(len(self), -1)).reshape(values.shape)
+
+    def __rmatmul__(self, x: Any) -> Any:
+        return x @ self.csr
+
+    def __getitem__(self, key: Any) -> Any:
+        """As of np.asarray(self), without a copy of the rest."""
+        row, column = key if isinstance(key, tuple) else (key, slice(None))
+        part = self.csr[row, column]
+        if scipy.sparse.issparse(part):
+            single = [not isinstance(k, slice) and np.ndim(k) == 0 for k in (row, column)]
+            return part.toarray().squeeze(tuple(np.flatnonzero(single)))
+        return np.asarray(part).reshape(np.broadcast(row, column).shape) if np.ndim(part) else part
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> np.ndarray:
+        if copy is False:
+            raise ValueError("form factors are stored as runs of columns: an array of them is a copy")
+        return self.csr.toarray().astype(dtype or self.csr.dtype, copy=False)
 
     @property
     def mesh(self) -> Optional[Mesh]:
