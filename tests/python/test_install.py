@@ -1,6 +1,7 @@
 """The installed package: by pip, without network and isolation."""
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -42,9 +43,28 @@ def test_pip_installs_a_complete_package(tmp_path):
     # Pictures take a library that is opened only when it is needed.
     picture = "data/cornell-box.png"
     program = package.parents[2] / "bin/radiosity"
+    assert (package.parents[2] / "share/man/man1/radiosity-render.1").exists()
     assert "difference" in run(program, "compare", picture, picture)
 
 
 def test_cmake_installs_a_complete_package(tmp_path):
     run("cmake", "--install", BUILD, "--prefix", str(tmp_path))
     works(tmp_path / f"lib/{PYTHON}/site-packages")
+
+
+def test_what_the_build_lacks_is_said_in_a_line(tmp_path):
+    # A cmake that does not see what has its package files in /usr/share.
+    blind = tmp_path / "bin/cmake"
+    blind.parent.mkdir()
+    blind.write_text(f'#!/bin/sh\nexec {shutil.which("cmake")} "$@" -DCMAKE_IGNORE_PREFIX_PATH=/usr\n')
+    blind.chmod(0o755)
+    call = f"import wheel_of_cmake as w; w.build_wheel({str(tmp_path)!r}, {{'build-dir': {str(tmp_path / 'b')!r}}})"
+    done = subprocess.run([sys.executable, "-c", call], capture_output=True, text=True, cwd=ROOT / "src/python",
+                          env={**os.environ, "PATH": f"{blind.parent}:{os.environ['PATH']}"})
+    assert done.returncode == 1 and done.stdout == ""
+    assert done.stderr.startswith("radiosity: cmake does not find Eigen3; ") and done.stderr.count("\n") == 1
+    assert "Eigen3" in (tmp_path / "b/configure.log").read_text()
+    empty = subprocess.run([sys.executable, "-c", call], capture_output=True, text=True, cwd=ROOT / "src/python",
+                           env={**os.environ, "PATH": ""})
+    assert empty.stderr == ("radiosity: there is no cmake; on Debian, tools/setup installs all that the build "
+                            "takes\n")
