@@ -85,7 +85,7 @@ def built(folder):
             sys.exit(f"radiosity: there is no {program}; on Debian, tools/setup installs all that the build takes")
     if not (folder / "CMakeCache.txt").exists():
         configured(folder)
-        print("radiosity: building takes some ten minutes of two cores", flush=True)
+        print("radiosity: building takes five to ten minutes of two cores", flush=True)
     if "build radiosity_python:" not in (folder / "build.ninja").read_text():
         sys.exit("radiosity: the build has no Python package; it needs the headers of Python and pybind11 "
                  "(Debian: tools/setup)")

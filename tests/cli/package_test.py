@@ -29,6 +29,11 @@ class Contents(unittest.TestCase):
         self.assertEqual(identifiers[2:], re.findall(r"^Relationship: SPDXRef-radiosity CONTAINS (\S+)$", text, re.M))
         self.assertEqual(len(identifiers), 2 + len(listed))
 
+    def test_the_version_to_cite_is_the_programs(self):
+        said = subprocess.run([os.environ["RADIOSITY"], "--version"], capture_output=True, text=True, check=True).stdout
+        cited = re.search(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(), re.M).group(1)
+        self.assertEqual(said, f"radiosity {cited}\n")
+
 
 if __name__ == "__main__":
     unittest.main()

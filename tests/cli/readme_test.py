@@ -12,7 +12,7 @@ from cli_runner import HAS_PAGES
 PROGRAM = os.environ["RADIOSITY"]
 ROOT = pathlib.Path(os.environ["RADIOSITY_SOURCE_DIR"])
 WIDTH = 120  # columns of a line, tables too
-READMES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(
+READMES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")] + sorted(
     p for folder in ("data", "src", "tests") for p in (ROOT / folder).rglob("README.md"))
 
 
