@@ -91,14 +91,18 @@ class Install(unittest.TestCase):
                 copy = build / script.relative_to(BUILD)
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 copy.write_text(script.read_text().replace(BUILD, str(build)))
-            for name in ["radiosity", "radiosity-assimp", *pathlib.Path(BUILD).glob("libradiosity_*.so")]:
-                shutil.copy(pathlib.Path(BUILD, name), build)
-            shutil.copytree(pathlib.Path(BUILD, "share"), build / "share")
 
             def install(*component):
                 return subprocess.run(["cmake", "--install", build, "--prefix", prefix, *component],
                                       capture_output=True, text=True)
 
+            nothing = install()
+            self.assertEqual(nothing.returncode, 0, nothing.stderr)
+            self.assertFalse(prefix.exists())
+            self.assertIn("not built: program; ", nothing.stdout)
+            for name in ["radiosity", "radiosity-assimp", *pathlib.Path(BUILD).glob("libradiosity_*.so")]:
+                shutil.copy(pathlib.Path(BUILD, name), build)
+            shutil.copytree(pathlib.Path(BUILD, "share"), build / "share")
             done = install()
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stdout, "not built: library; .*--target radiosity\n")
