@@ -56,6 +56,14 @@ export class TriangleTree {
     return best;
   }
 
+  /** The unit vector towards its front. */
+  normal(t: number): Point {
+    const a = this.corner(t, 0);
+    const n = cross(minus(this.corner(t, 1), a), minus(this.corner(t, 2), a));
+    const length = Math.sqrt(dot(n, n));
+    return [n[0] / length, n[1] / length, n[2] / length];
+  }
+
   private at(t: number, corner: number, axis: number): number {
     return this.position[this.triangle[t * 3 + corner]! * 3 + axis]!;
   }

@@ -1,7 +1,7 @@
 // The viewer's position: orbit around a pivot, pan, zoom, or walk; by mouse, touch and keyboard.
 import { PerspectiveCamera, Vector3 } from "three";
 import type { Header } from "./container";
-import { isShortcut } from "./ui";
+import { isShortcut, keysAreFree } from "./ui";
 
 const STEEPEST = (89 * Math.PI) / 180;
 const TURN_A_PIXEL = 0.005; // radians
@@ -27,6 +27,8 @@ export class CameraControl {
   onMove: () => void = () => {};
   /** A click or tap at these pixels of the canvas; `second`: with Shift, or held for long. */
   onTap: (x: number, y: number, second: boolean) => void = () => {};
+  /** The part of a walker's step that nothing is in the way of. */
+  free: (from: Vector3, step: Vector3) => Vector3 = (_, step) => step;
 
   private readonly up: Vector3;
   private readonly east: Vector3;
@@ -139,21 +141,24 @@ export class CameraControl {
   private pan(x: number, y: number): void {
     const height = this.canvas.clientHeight || 1;
     const size = (2 * this.distance * Math.tan((this.camera.fov * Math.PI) / 360)) / height;
-    this.eye.addScaledVector(this.right(), -x * size)
-      .addScaledVector(this.right().cross(this.forward()), y * size);
+    this.shift(this.right().multiplyScalar(-x * size)
+      .addScaledVector(this.right().cross(this.forward()), y * size));
+  }
+
+  /** Moves eye and pivot; a walker goes through nothing. */
+  private shift(step: Vector3): void {
+    this.eye.add(this.walking ? this.free(this.eye, step) : step);
     this.moved();
   }
 
   /** Nearer the pivot by this factor; walking: a step ahead. */
   private zoom(factor: number): void {
-    if (this.walking) {
-      this.eye.addScaledVector(this.forward(), this.header.diagonal * 0.15 * (1 - factor));
-    } else {
-      const nearer = Math.max(this.distance * factor, this.header.diagonal * 2e-3);
-      this.eye.addScaledVector(this.forward(), this.distance - nearer);
-      this.distance = nearer;
-    }
-    this.moved();
+    const ahead = this.forward();
+    if (this.walking) return this.shift(ahead.multiplyScalar(this.header.diagonal * 0.15 * (1 - factor)));
+    const nearer = Math.max(this.distance * factor, this.header.diagonal * 2e-3);
+    const step = this.distance - nearer;
+    this.distance = nearer;
+    this.shift(ahead.multiplyScalar(step));
   }
 
   private listen(): void {
@@ -168,9 +173,11 @@ export class CameraControl {
     c.addEventListener("pointermove", (event) => this.drag(event));
     c.addEventListener("pointerup", (event) => this.release(event));
     c.addEventListener("pointercancel", (event) => this.pointers.delete(event.pointerId));
-    c.addEventListener("keydown", (event) => this.keyDown(event));
-    c.addEventListener("keyup", (event) => this.keys.delete(event.code));
-    c.addEventListener("blur", () => this.blur());
+    c.addEventListener("blur", () => c.classList.remove("pointed"));
+    document.addEventListener("keydown", (event) => this.keyDown(event));
+    document.addEventListener("keyup", (event) => this.keys.delete(event.code));
+    document.addEventListener("focusin", () => this.keys.clear());
+    window.addEventListener("blur", () => this.keys.clear());
   }
 
   private press(event: PointerEvent): void {
@@ -212,15 +219,10 @@ export class CameraControl {
     this.onTap(event.offsetX, event.offsetY, event.shiftKey || held);
   }
 
-  private blur(): void {
-    this.keys.clear();
-    this.canvas.classList.remove("pointed");
-  }
-
   private keyDown(event: KeyboardEvent): void {
     if (!MODIFIERS.includes(event.key)) this.canvas.classList.remove("pointed");
     const motion = CHARACTERS[event.key] ?? KEYS[event.code];
-    if (isShortcut(event) || !motion) return;
+    if (isShortcut(event) || !keysAreFree() || !motion) return;
     event.preventDefault();
     const first = this.keys.size === 0;
     this.keys.set(event.code, motion);
@@ -242,10 +244,7 @@ export class CameraControl {
     const turn = TURN_A_SECOND * seconds;
     const pixels = 400 * seconds;
     const step = this.header.diagonal * WALK_A_SECOND * seconds;
-    const slide = (direction: Vector3, length: number) => {
-      this.eye.addScaledVector(direction, length);
-      this.moved();
-    };
+    const slide = (direction: Vector3, length: number) => this.shift(direction.clone().multiplyScalar(length));
     const flat = this.forward().addScaledVector(this.up, -this.forward().dot(this.up)).normalize();
     switch (action) {
       case "left": return shift ? this.pan(pixels, 0) : this.turn(this.walking ? -turn : turn, 0);

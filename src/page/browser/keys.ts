@@ -1,9 +1,8 @@
-// Keys of the whole page. Single characters act only while the picture, or nothing, has the focus, so
-// that they do not get in the way of typing.
+// Keys of the whole page, but for those of the camera.
 import type { ConvergePanel } from "./converge_panel";
 import type { GatherPanel } from "./gather_panel";
 import { clearPicks, pickAt } from "./patch_panel";
-import { choose, element, input, isShortcut } from "./ui";
+import { choose, element, input, isShortcut, keysAreFree, unfold } from "./ui";
 import type { Viewer } from "./viewer";
 
 export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: GatherPanel): void {
@@ -23,17 +22,23 @@ export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: Gathe
     "v": () => choose("move", viewer.control.walking ? "orbit" : "walk"),
     "r": () => viewer.resetView(),
     "f": () => viewer.focusPick(),
-    " ": () => converge.toggle(),
+    "i": () => element<HTMLDetailsElement>("patch-panel").toggleAttribute("open"),
+    " ": () => {
+      unfold("converge-panel");
+      converge.toggle();
+    },
     ",": () => converge.step(-1),
-    "g": () => gather.toggle(),
     ".": () => converge.step(1),
+    "g": () => {
+      unfold("gather-panel");
+      gather.toggle();
+    },
     "?": () => element<HTMLDialogElement>("help").showModal(),
     "escape": () => clearPicks(viewer),
     "enter": (event) => pickAt(viewer, canvas.clientWidth / 2, canvas.clientHeight / 2, event.shiftKey),
   };
   document.addEventListener("keydown", (event) => {
-    const free = document.activeElement === canvas || document.activeElement === document.body;
-    if (!free || isShortcut(event)) return;
+    if (!keysAreFree() || isShortcut(event)) return;
     const act = actions[event.key.toLowerCase()];
     if (!act) return;
     event.preventDefault();

@@ -6,8 +6,9 @@ import { GatherPanel } from "./gather_panel";
 import { setUpKeys } from "./keys";
 import { unpack } from "./load";
 import { setUpLook } from "./look_panel";
-import { pickAt, setUpPatch } from "./patch_panel";
+import { inspecting, pickAt, setUpPatch } from "./patch_panel";
 import { RelightPanel } from "./relight_panel";
+import { SETTLED_MS } from "./stage";
 import { copy, counted, element, make, on, onChoice, short } from "./ui";
 import { Viewer } from "./viewer";
 
@@ -67,11 +68,15 @@ function sayTitle({ header }: PageData): void {
 function setUpCamera(viewer: Viewer): void {
   const say = () => { element("camera-text").textContent = viewer.control.text(); };
   const draw = viewer.control.onMove;
+  let settling = 0;
   viewer.control.onMove = () => {
     draw();
     say();
+    window.clearTimeout(settling);
+    settling = window.setTimeout(() => { element("lost").hidden = viewer.seesLight(); }, SETTLED_MS);
   };
   say();
+  on("lost", "click", () => viewer.resetView());
   onChoice("move", (value) => { viewer.control.walking = value === "walk"; });
   on("reset-view", "click", () => viewer.resetView());
   on("copy-camera", "click", () => void copy(viewer.control.text(), element("copy-camera")));
@@ -85,7 +90,7 @@ function setUpPanels(viewer: Viewer): void {
   setUpCamera(viewer);
   const gather = new GatherPanel(viewer, () => converge.forget());
   setUpKeys(viewer, converge, gather);
-  viewer.control.onTap = (x, y, second) => pickAt(viewer, x, y, second);
+  viewer.control.onTap = (x, y, second) => { if (inspecting()) pickAt(viewer, x, y, second); };
   on("open-help", "click", () => element<HTMLDialogElement>("help").showModal());
   on("to-stored", "click", () => {
     gather.forget();

@@ -1,7 +1,7 @@
 // The panel of the picked patches and their exchange.
 import { radiosityOf } from "./light";
 import type { MarkName } from "./stage";
-import { element, input, make, number, on } from "./ui";
+import { element, input, make, number, on, unfold } from "./ui";
 import type { Picked, Viewer } from "./viewer";
 
 const NAMES: MarkName[] = ["first", "second"];
@@ -94,11 +94,14 @@ export function clearPicks(viewer: Viewer): void {
   for (const name of NAMES) void viewer.pick(name, null);
 }
 
+/** A click picks while the panel is open. */
+export const inspecting = (): boolean => element<HTMLDetailsElement>("patch-panel").open;
+
 /** Picks the patch at a pixel. If there is none it clears that pick, the first one with the second. */
 export function pickAt(viewer: Viewer, x: number, y: number, second: boolean): void {
   const name = second ? "second" : "first";
   const patch = viewer.patchAt(x, y);
-  element<HTMLDetailsElement>("patch-panel").open = true;
+  unfold("patch-panel");
   if (patch === null && !second) clearPicks(viewer);
   else void viewer.pick(name, patch).then(() => bringIntoSight(name));
 }

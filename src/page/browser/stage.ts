@@ -10,7 +10,7 @@ import type { SceneMeshes } from "./scene";
 import type { Uniforms } from "./shading";
 
 /** A movement ends after this time without motion; then the picture is drawn at full resolution. */
-const SETTLED_MS = 300;
+export const SETTLED_MS = 300;
 const MARK_PIXELS = 3;
 const RIM_PIXELS = 6; // behind the mark, so that it shows on any colour
 
@@ -59,7 +59,7 @@ export class Stage {
   private drawing = false;
   private settling = 0; // a timer
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly meshes: SceneMeshes,
+  constructor(readonly canvas: HTMLCanvasElement, private readonly meshes: SceneMeshes,
               private readonly control: CameraControl, private readonly uniforms: Uniforms) {
     const able = document.createElement("canvas").getContext("webgl2") !== null;
     this.renderer = able ? new WebGLRenderer({ canvas, antialias: true, alpha: true }) : null;

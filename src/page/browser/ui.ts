@@ -39,9 +39,20 @@ export function number(value: number): HTMLElement {
 
 export const counted = (count: number): string => count.toLocaleString("en");
 
+/** Opens a panel and scrolls to it. */
+export function unfold(id: string): void {
+  element<HTMLDetailsElement>(id).open = true;
+  element(id).scrollIntoView({ block: "nearest" });
+}
+
 /** Whether a key belongs to the browser. AltGr, which gives characters, is Ctrl and Alt in Windows. */
 export function isShortcut(event: KeyboardEvent): boolean {
   return event.metaKey || ((event.ctrlKey || event.altKey) && !event.getModifierState("AltGraph"));
+}
+
+/** Whether keys are the picture's: it, or nothing, has the focus, so that they do not get in the way of typing. */
+export function keysAreFree(): boolean {
+  return document.activeElement === element("picture") || document.activeElement === document.body;
 }
 
 /** The value of the selected radio button of a group. */

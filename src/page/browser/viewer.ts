@@ -17,10 +17,13 @@ import { SceneMeshes, type Surfaces } from "./scene";
 import { makeUniforms, mapTexture } from "./shading";
 import { SolverClient, type Relighting } from "./solver_client";
 import { type MarkName, Stage } from "./stage";
+import { freeStep } from "./walk";
 
 export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors" | "difference";
 /** The source of the light that is shown. */
 export type Source = "stored" | "relit" | "run" | "gathered";
+
+const LOOKS = 9; // rays across the picture and down it
 
 export interface Picked {
   patch: number;
@@ -69,6 +72,7 @@ export class Viewer {
     this.stage = new Stage(canvas, this.meshes, this.control, this.uniforms);
     this.tree = new TriangleTree(data.position, data.patchTriangle);
     this.uniforms.exposure.value = data.header.exposure;
+    this.control.free = (from, step) => freeStep(this.tree, data.header.diagonal, from, step);
     this.pivotOnScene();
     this.refreshLight();
   }
@@ -179,6 +183,15 @@ export class Viewer {
     const { from, direction } = this.control.ray(x, y);
     const hit = this.tree.cast(from.toArray(), direction.toArray());
     return hit ? this.data.trianglePatch[hit.triangle]! : null;
+  }
+
+  /** Whether some of the picture shows light: outside a room, or within a table, there is none. */
+  seesLight(): boolean {
+    const { clientWidth: width, clientHeight: height } = this.stage.canvas;
+    const lit = (patch: number | null) => patch !== null &&
+      [0, 1, 2].some((b) => this.light.irradiance[patch * 3 + b]! + this.light.emission[patch * 3 + b]! > 0);
+    const places = Array.from({ length: LOOKS }, (_, k) => (k + 0.5) / LOOKS);
+    return places.some((y) => places.some((x) => lit(this.patchAt(x * width, y * height))));
   }
 
   focusPick(): void {

@@ -205,6 +205,7 @@ test("fingers: a long press picks the second patch, two zoom", async () => {
       type,
       touchPoints: points.map(([x, y], id) => ({ x: box.x + box.width * x, y: box.y + box.height * y, id })),
     });
+  await page.evaluate(() => document.getElementById("patch-panel").setAttribute("open", ""));
   await touch("touchStart", [0.5, 0.35]);
   await touch("touchEnd");
   await page.locator('[data-pick="first"]').waitFor();
@@ -232,6 +233,7 @@ test("390 pixels: panels fold, nothing is wider than the screen, a touch picks",
     assert.equal(await narrow.locator("details[open]").count(), 0);
     const box = await narrow.locator("#picture").boundingBox();
     assert.ok(box.width === 390 && box.height > 300);
+    await narrow.locator("#patch-panel summary").tap();
     await narrow.touchscreen.tap(box.x + 195, box.y + box.height - 20);
     await narrow.locator('[data-pick="first"]').waitFor();
     await narrow.locator("#legend").waitFor();
