@@ -4,20 +4,11 @@
 
 #include <algorithm>
 
+#include "cli/words.h"
+
 namespace radiosity::cli {
 
 namespace {
-
-/// The word with quotes for a shell, if it needs them.
-std::string quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_./:=,+-@%") == std::string::npos;
-  if (plain) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
 
 /// A surface that emits light.
 const Surface* lampOf(const Scene& scene) {
@@ -37,11 +28,11 @@ std::string lightCure(const Request& request, const Scene& scene) {
         lamp->name);
   }
   std::string command;
-  for (const std::string& argument : request.arguments) command += quoted(argument) + " ";
+  for (const std::string& argument : request.arguments) command += shellWord(argument) + " ";
   return fmt::format(
       "make something a lamp: {}--set {} (W/m^2/sr), or light an open scene from "
       "outside: --sky 1",
-      command, quoted(likelyLamp(scene) + ".radiance=10"));
+      command, shellWord(likelyLamp(scene) + ".radiance=10"));
 }
 
 std::string darknessText(const Request& request, const Scene& scene, int bands) {

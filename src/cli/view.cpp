@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -9,6 +10,7 @@
 #include "cli/element_use.h"
 #include "cli/picture.h"
 #include "cli/summaries.h"
+#include "cli/words.h"
 #include "radiosity/page.h"
 
 namespace radiosity::cli {
@@ -67,11 +69,34 @@ void summarizePage(Report& report, const Picture& picture, double ev, const Page
   report.bytes("packed_bytes", "data in the file", page.packed_bytes);
 }
 
+/// What chooses the scene and its light, as a shell reads it: the results file if one is written, else
+/// the arguments without those of the run and of the picture, which a page changes.
+std::string sceneArguments(const Request& request, const OutputSet& files) {
+  if (files.has(Format::results)) return shellWord(files.path(Format::results));
+  constexpr const char* kOwn[] = {"-o",       "--output", "--report", "--time-limit", "--threads",
+                                  "--camera", "--width",  "--height", "--exposure",   "--elements"};
+  std::string text;
+  for (std::size_t k = 2; k < request.arguments.size(); ++k) {
+    const std::string& word = request.arguments[k];
+    if (std::ranges::find(kOwn, word) != std::end(kOwn)) {
+      ++k;
+      continue;
+    }
+    const auto holds = [&](const std::string& name) {
+      return word.starts_with(name.starts_with("--") ? name + "=" : name);
+    };
+    if (word == "--quiet" || std::ranges::any_of(kOwn, holds)) continue;
+    text += (text.empty() ? "" : " ") + shellWord(word);
+  }
+  return text;
+}
+
 void writePages(Session& session, Pipeline& pipeline, bool elements, OutputSet& files) {
   const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
   const ExposedPicture shown = exposePicture(session, pipeline, light);
   const PageOptions options{fs::path(session.request.input).stem().string(), shown.picture.camera,
-                            shown.ev, shown.picture.options.crease};
+                            shown.ev, shown.picture.options.crease,
+                            sceneArguments(session.request, files)};
   PageReport page;
   files.write(Format::page, "page, opens in a browser", [&](const std::string& temporary) {
     page = writePage(temporary, pipeline, light, options, session.progress);

@@ -167,6 +167,16 @@ std::string spelledAsOption(std::string_view field, std::string_view value) {
   return fmt::format("--{}{}{}", line.optionName(), value.empty() ? "" : " ", value);
 }
 
+std::string shellWord(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_./:=,+-@%") == std::string::npos;
+  if (plain) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string oneLine(const std::string& text) {
   std::string line;
   for (std::size_t k = 0; k < text.size(); ++k) {

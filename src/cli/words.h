@@ -45,6 +45,9 @@ std::string suggestion(const std::string& word, std::span<const std::string> can
 /// Spells an option of the library (radiosity/spelling.h) as the command line does: "--near exact".
 std::string spelledAsOption(std::string_view field, std::string_view value);
 
+/// The word with quotes for a shell, if it needs them.
+std::string shellWord(const std::string& word);
+
 /// The text on one line: line breaks become "; ".
 std::string oneLine(const std::string& text);
 

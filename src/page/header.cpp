@@ -94,6 +94,7 @@ std::vector<MaterialColours> materialColours(const Scene& scene, const PatchMesh
 void describeScene(Json& header, const Scene& scene, const PatchMesh& mesh,
                    const PatchColours& patches, const PageOptions& options) {
   header["title"] = options.title;
+  header["arguments"] = options.arguments;
   header["program"] = "radiosity " RADIOSITY_VERSION;
   header["patches"] = mesh.size();
   header["exposure"] = options.exposure;

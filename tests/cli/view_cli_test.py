@@ -139,6 +139,14 @@ class Pages(CliTest):
         self.assertEqual(header["camera"]["eye"], [.1, .5, .5])
         self.assertAlmostEqual(header["camera"]["fov"], 50)
 
+    def test_the_page_knows_the_arguments_that_draw_its_light(self):
+        run = ["--quiet", "--report=r.json", "--exposure", "2", "--elements=off", "--threads", "1"]
+        self.run_program("view", "box.obj", *BOX, *run, "--set", "wal*.reflectance=.5", "-o", "p.html")
+        self.assertEqual(self.page("p.html").header["arguments"],
+                         "box.obj --patches 60 --set 'wal*.reflectance=.5'")
+        self.run_program("view", "box.obj", *BOX, *run, "-o", "p.html", "-o", "kept box.h5")
+        self.assertEqual(self.page("p.html").header["arguments"], "'kept box.h5'")
+
     def test_one_band_is_grey(self):
         self.run_program("solve", "box.obj", *BOX, "-o", "s.h5")
         with h5py.File(self.folder / "s.h5", "r+") as file:

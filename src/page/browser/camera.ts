@@ -1,6 +1,6 @@
 // The viewer's position: orbit around a pivot, pan, zoom, or walk; by mouse, touch and keyboard.
 import { PerspectiveCamera, Vector3 } from "three";
-import type { Header } from "./container";
+import type { Header, Rgb } from "./container";
 import { isShortcut, keysAreFree } from "./ui";
 
 const STEEPEST = (89 * Math.PI) / 180;
@@ -24,7 +24,7 @@ const CHARACTERS: typeof KEYS = { "+": "forward", "=": "forward", "-": "back" };
 export class CameraControl {
   readonly camera: PerspectiveCamera;
   walking = false;
-  onMove: () => void = () => {};
+  private readonly listeners: (() => void)[] = [];
   /** A click or tap at these pixels of the canvas; `second`: with Shift, or held for long. */
   onTap: (x: number, y: number, second: boolean) => void = () => {};
   /** The part of a walker's step that nothing is in the way of. */
@@ -43,21 +43,33 @@ export class CameraControl {
   private pressed = 0;
   private lastKeyFrame = 0;
 
+  /** `act`: after every motion. */
+  listen(act: () => void): void { this.listeners.push(act); }
+
   constructor(private readonly canvas: HTMLCanvasElement, private readonly header: Header) {
     this.camera = new PerspectiveCamera(header.camera.fov, 1, header.diagonal * 1e-3, header.diagonal * 20);
     this.up = new Vector3(...header.camera.up).normalize();
     const side = Math.abs(this.up.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
     this.north = this.up.clone().cross(side).normalize();
     this.east = this.north.clone().cross(this.up);
-    this.listen();
+    this.listenToDevices();
     this.reset();
   }
 
   /** Returns to the first view of the page. */
-  reset(): void {
+  reset(): void { this.place(this.header.camera.eye, this.header.camera.target); }
+
+  /** Looks from and at these points of the scene. */
+  place(eye: Rgb, target: Rgb): void {
     const origin = new Vector3(...this.header.origin);
-    const eye = new Vector3(...this.header.camera.eye).sub(origin);
-    this.look(eye, new Vector3(...this.header.camera.target).sub(origin));
+    this.look(new Vector3(...eye).sub(origin), new Vector3(...target).sub(origin));
+  }
+
+  /** The eye and the pivot, as texts of three numbers. */
+  words(): { eye: string; target: string } {
+    const words = (p: Vector3) => p.toArray().map((x) => Number(x.toPrecision(6))).join(",");
+    const eye = this.eye.clone().add(new Vector3(...this.header.origin));
+    return { eye: words(eye), target: words(eye.clone().addScaledVector(this.forward(), this.distance)) };
   }
 
   look(eye: Vector3, target: Vector3): void {
@@ -73,6 +85,7 @@ export class CameraControl {
   /** Turns around this point from now on; the view stays. It must lie on the line of sight. */
   pivotAt(distance: number): void {
     this.distance = Math.max(distance, this.header.diagonal * 1e-3);
+    this.told(); // texts of the camera have the pivot
   }
 
   /** Turns towards a point and moves to a distance that suits `size`. */
@@ -91,11 +104,8 @@ export class CameraControl {
 
   /** The camera as text for `radiosity render --camera`. */
   text(): string {
-    const origin = new Vector3(...this.header.origin);
-    const words = (p: Vector3) => p.toArray().map((x) => Number(x.toPrecision(6))).join(",");
-    const eye = this.eye.clone().add(origin);
-    const target = eye.clone().addScaledVector(this.forward(), this.distance);
-    return `eye=${words(eye)};target=${words(target)};up=${words(this.up)};` +
+    const { eye, target } = this.words();
+    return `eye=${eye};target=${target};up=${this.header.camera.up.join(",")};` +
       `fov=${Number(this.camera.fov.toPrecision(6))}`;
   }
 
@@ -125,7 +135,11 @@ export class CameraControl {
     this.camera.position.copy(this.eye);
     this.camera.lookAt(this.eye.clone().add(this.forward()));
     this.camera.updateProjectionMatrix();
-    this.onMove();
+    this.told();
+  }
+
+  private told(): void {
+    for (const act of this.listeners) act();
   }
 
   /** Orbits around the pivot; walking: turns the head. Radians to the right and up. */
@@ -161,7 +175,7 @@ export class CameraControl {
     this.shift(ahead.multiplyScalar(step));
   }
 
-  private listen(): void {
+  private listenToDevices(): void {
     const c = this.canvas;
     c.addEventListener("contextmenu", (event) => event.preventDefault());
     c.addEventListener("wheel", (event) => {

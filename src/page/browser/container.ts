@@ -31,6 +31,7 @@ export interface LightInfo {
 export interface Header {
   title: string;
   program: string;
+  arguments: string; // by which the program draws this light; empty: not known
   bands: number;
   patches: number;
   nodes: number; // the patches, or clusters of these

@@ -8,6 +8,7 @@ import { unpack } from "./load";
 import { setUpLook } from "./look_panel";
 import { inspecting, pickAt, setUpPatch } from "./patch_panel";
 import { RelightPanel } from "./relight_panel";
+import { setUpShare } from "./share_panel";
 import { SETTLED_MS } from "./stage";
 import { copy, counted, element, make, on, onChoice, short } from "./ui";
 import { Viewer } from "./viewer";
@@ -67,14 +68,12 @@ function sayTitle({ header }: PageData): void {
 
 function setUpCamera(viewer: Viewer): void {
   const say = () => { element("camera-text").textContent = viewer.control.text(); };
-  const draw = viewer.control.onMove;
   let settling = 0;
-  viewer.control.onMove = () => {
-    draw();
+  viewer.control.listen(() => {
     say();
     window.clearTimeout(settling);
     settling = window.setTimeout(() => { element("lost").hidden = viewer.seesLight(); }, SETTLED_MS);
-  };
+  });
   say();
   on("lost", "click", () => viewer.resetView());
   onChoice("move", (value) => { viewer.control.walking = value === "walk"; });
@@ -105,6 +104,7 @@ function setUpPanels(viewer: Viewer): void {
   if (window.matchMedia(NARROW).matches) {
     for (const panel of document.querySelectorAll("details")) panel.open = false;
   }
+  setUpShare(viewer, relight); // the last, since it restores what an address says
 }
 
 async function begin(): Promise<void> {
@@ -120,7 +120,6 @@ async function begin(): Promise<void> {
   setUpPanels(viewer);
   sayAbout(viewer);
   viewer.refreshTheme();
-  viewer.toStored();
   for (const query of ["(prefers-color-scheme: dark)", "(prefers-contrast: more)"]) {
     window.matchMedia(query).addEventListener("change", () => viewer.refreshTheme());
   }

@@ -1,14 +1,15 @@
-// The panel of lamps and materials that the viewer changes, with an equivalent command line.
+// The panel of lamps and materials that the viewer changes, with equivalent options of the command line.
 import { chromaOf, hexOf } from "./colour";
 import type { Rgb } from "./container";
 import { texturedMaterials, type Textured } from "./light";
 import type { Relighting } from "./solver_client";
-import { copy, counted, element, make, on, short } from "./ui";
+import { counted, element, make, on, quoted, short } from "./ui";
 import type { Viewer } from "./viewer";
 
 const STRONGEST = 4; // times what it was
 
 interface Row {
+  key: string; // in links
   name: string;
   note: string;
   get: () => Rgb;
@@ -29,8 +30,6 @@ const uniform = (x: number): Rgb => [x, x, x];
 const digits = (value: Rgb): string => value.map((x) => Number(x.toPrecision(7))).join(",");
 /** The same, never rounded up: the program refuses a tint that brings a reflectance above 1. */
 const digitsBelow = (value: Rgb): string => value.map((x) => Math.floor(x * 1e6) / 1e6).join(",");
-/** A name as a shell reads it. */
-const quoted = (name: string): string => (/^[\w.-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`);
 
 /** What is said of a texture: the largest factor that the program allows. */
 function textureNote(factor: Rgb): string {
@@ -50,7 +49,6 @@ export class RelightPanel {
     this.fill("lamps", "Lamps", [...lamps.map((k) => this.lamp(k)), ...lights.map((_, l) => this.light(l))]);
     this.fill("materials", "Reflectances", used.map((k) => this.material(k)));
     on("relight-reset", "click", () => this.reset());
-    on("copy-command", "click", () => void copy(element("command").textContent ?? "", element("copy-command")));
     viewer.onRelit((light) => this.sayRelit(light));
   }
 
@@ -60,7 +58,7 @@ export class RelightPanel {
     for (const { refresh } of this.rows) refresh();
     this.onChange();
     this.viewer.toStored();
-    this.sayCommand();
+    element<HTMLButtonElement>("relight-reset").disabled = true;
     element("relight-facts").textContent = "";
   }
 
@@ -69,7 +67,7 @@ export class RelightPanel {
     const textured = this.textured[k]!.emission;
     const get = () => this.viewer.states[k]!.emission;
     return {
-      name, note: textured ? ", textured" : "", stored: emission, unit: "W/m²",
+      key: `emission:${name}`, name, note: textured ? ", textured" : "", stored: emission, unit: "W/m²",
       limits: uniform(STRONGEST * largest(emission)),
       get,
       set: (value) => { this.viewer.states[k]!.emission = value; },
@@ -81,7 +79,7 @@ export class RelightPanel {
     const { name, kind, single, unit, strength, parameters } = this.viewer.data.header.lights[l]!;
     const get = () => strength.map((x, b) => x * this.viewer.lights[l]![b]!) as Rgb;
     return {
-      name, note: "", stored: strength, limits: uniform(STRONGEST * largest(strength)), unit: unit.replace("^2", "²"),
+      key: `light:${name}`, name, note: "", stored: strength, limits: uniform(STRONGEST * largest(strength)), unit: unit.replace("^2", "²"),
       get,
       set: (value) => {
         this.viewer.lights[l] = value.map((x, b) => (strength[b]! > 0 ? x / strength[b]! : 0)) as Rgb;
@@ -97,7 +95,7 @@ export class RelightPanel {
     const tint = () => get().map((x, b) => (reflectance[b]! > 0 ? x / reflectance[b]! : 1)) as Rgb;
     const most = (x: number, b: number) => (x > 0 ? x / factor[b]! : 0);
     return {
-      name, note: textured ? textureNote(factor) : "", stored: reflectance, unit: "",
+      key: `reflectance:${name}`, name, note: textured ? textureNote(factor) : "", stored: reflectance, unit: "",
       limits: textured ? (reflectance.map(most) as Rgb) : uniform(1),
       get,
       set: (value) => { this.viewer.states[k]!.reflectance = value; },
@@ -167,22 +165,35 @@ export class RelightPanel {
 
   private changed(): void {
     this.onChange();
-    this.sayCommand();
+    element<HTMLButtonElement>("relight-reset").disabled = this.altered.length === 0;
     element("relight-facts").dataset["state"] = "solving";
     this.viewer.relight();
   }
 
-  /** Says which options of the program give this light, and what none gives. */
-  private sayCommand(): void {
-    const changed = this.rows.map(({ row }) => row).filter((row) => !same(row.get(), row.stored));
-    const options = changed.map((row) => row.option()).filter((option) => option !== null);
-    const without = changed.filter((row) => row.option() === null).map((row) => row.name);
-    element<HTMLButtonElement>("relight-reset").disabled = changed.length === 0;
-    element("command-row").hidden = options.length === 0;
-    element("command").textContent = `radiosity solve RESULTS.h5 ${options.join(" ")}`;
-    element("command-note").hidden = without.length === 0;
-    element("command-note").textContent = `No option gives the changed emission of ${without.join(", ")}: ` +
-      "--set would replace its texture by one value. (A weight for all of its light: solve --basis, then --mix.)";
+  private get altered(): Row[] {
+    return this.rows.map(({ row }) => row).filter((row) => !same(row.get(), row.stored));
+  }
+
+  /** The program's options for what is changed. */
+  options(): string[] { return this.altered.map((row) => row.option()).filter((option) => option !== null); }
+
+  /** What is changed and has no option. */
+  withoutOption(): string[] { return this.altered.filter((row) => row.option() === null).map((row) => row.name); }
+
+  /** The present values of what is changed, by their keys. */
+  state(): Record<string, string> { return Object.fromEntries(this.altered.map((row) => [row.key, digits(row.get())])); }
+
+  /** Sets the values of `state`, and all others to what is stored; takes their keys out of `state`. */
+  restore(state: Map<string, string>): void {
+    for (const { row, refresh } of this.rows) {
+      const value = state.get(row.key)?.split(",").map(Number) as Rgb | undefined;
+      const good = value?.length === 3 && value.every((x) => x >= 0 && Number.isFinite(x));
+      if (good) state.delete(row.key);
+      row.set(good ? limited(value!, row.limits) : [...row.stored]);
+      refresh();
+    }
+    if (this.altered.length > 0) this.changed();
+    else this.reset();
   }
 
   private sayRelit(light: Relighting): void {

@@ -68,7 +68,7 @@ export class Stage {
     this.pace = this.renderer && drawsInSoftware(this.gl(this.renderer)) ? new Pace() : null;
     this.scene.add(meshes.group);
     this.marks = { first: new Mark(this.scene), second: new Mark(this.scene) };
-    control.onMove = () => this.move();
+    control.listen(() => this.move());
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener("webglcontextrestored", () => this.draw());
     this.resize();
@@ -79,11 +79,31 @@ export class Stage {
     this.draw();
   }
 
+  /** Of the picture, in pixels of the screen. */
+  size(): [number, number] {
+    const ratio = Math.min(window.devicePixelRatio, 2);
+    return [Math.floor(this.canvas.clientWidth * ratio), Math.floor(this.canvas.clientHeight * ratio)];
+  }
+
   /** Draws soon: at most once a frame; in software when the last picture is done. */
   draw(): void {
     if (this.wanted) return;
     this.wanted = true;
     if (!this.drawing) requestAnimationFrame(() => void this.drawWanted());
+  }
+
+  /** The picture as it is now, without the movement's coarseness; `scale`: pixels a pixel of the page. */
+  still(scale: number): HTMLCanvasElement {
+    const moving = this.moving;
+    this.moving = false;
+    this.drawNow(scale);
+    const copy = document.createElement("canvas");
+    copy.width = this.canvas.width;
+    copy.height = this.canvas.height;
+    copy.getContext("2d")!.drawImage(this.canvas, 0, 0);
+    this.moving = moving;
+    this.drawNow();
+    return copy;
   }
 
   private async drawWanted(): Promise<void> {
@@ -132,11 +152,11 @@ export class Stage {
     this.drawNow(); // a resized canvas is empty until it is drawn
   }
 
-  private drawNow(): void {
+  private drawNow(scale = Math.min(window.devicePixelRatio, 2)): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.moving) this.canvas.removeAttribute("data-moving");
     if (!this.renderer) return;
-    const ratio = Math.min(window.devicePixelRatio, 2) * (this.moving ? this.pace?.scale ?? 1 : 1);
+    const ratio = scale * (this.moving ? this.pace?.scale ?? 1 : 1);
     if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     this.renderer.setScissorTest(false);
     this.renderer.clear();

@@ -37,6 +37,9 @@ export function number(value: number): HTMLElement {
   return make("data", { value: String(value) }, short(value));
 }
 
+/** A word as a shell reads it. */
+export const quoted = (word: string): string => (/^[\w.-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+
 export const counted = (count: number): string => count.toLocaleString("en");
 
 /** Opens a panel and scrolls to it. */

@@ -204,13 +204,17 @@ export class Viewer {
   resetView(): void {
     this.control.reset();
     this.pivotOnScene();
-    this.control.onMove(); // the text of the camera has the pivot
   }
 
   /** The quantity that is shown: a picked patch's form factors replace the light, unless a run is watched. */
   shown(): Show {
     if (this.show === "light" && this.source !== "run" && this.paint && this.picks.first?.row) return "factors";
     return this.show;
+  }
+
+  /** Whether the light is drawn finer than patches. */
+  get showsElements(): boolean {
+    return this.elements && this.source === "stored" && this.meshes.hasElements && this.meshes.surfaces === "smooth";
   }
 
   setSurfaces(surfaces: Surfaces): void {
@@ -229,7 +233,7 @@ export class Viewer {
     const shown = this.shown();
     const falseColour = shown !== "light";
     this.uniforms.showValue.value = falseColour;
-    this.stage.elements = this.elements && this.source === "stored";
+    this.stage.elements = this.showsElements;
     if (falseColour) this.setColours(this.values(shown, this.light));
     this.stage.draw();
     this.tell("view");

@@ -5,7 +5,7 @@ import { statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import {
-  apart, colours, folder, half, irradiance, launch, open, pageData, program, relativeError, results, style,
+  apart, colours, folder, half, irradiance, launch, open, pageData, program, pixels, relativeError, results, setOptions, style,
 } from "./support.mjs";
 
 let browser, page, said;
@@ -139,16 +139,7 @@ test("the picture is that of radiosity render", async () => {
     "--quiet",
   ]);
   const mine = await colours(square);
-  const script = [
-    "import sys, json",
-    "from PIL import Image",
-    "shown = Image.open(sys.argv[1]).convert('RGBA')",
-    "image = Image.new('RGBA', shown.size, (0, 0, 0, 0))",
-    "image.alpha_composite(shown)",
-    "at = lambda x, y: (int((.05 + .1 * x) * image.width), int((.05 + .1 * y) * image.height))",
-    "print(json.dumps([list(image.getpixel(at(x, y))) for y in range(10) for x in range(10)]))",
-  ].join("\n");
-  const theirs = JSON.parse(execFileSync("/usr/bin/python3", ["-c", script, file]));
+  const theirs = pixels(file);
   const pairs = theirs.map((p, k) => [p, mine.slice(3 * k, 3 * k + 3)]).filter(([p]) => p[3] === 255);
   assert.ok(pairs.length > 80);
   const difference = Math.sqrt(
@@ -169,7 +160,7 @@ test("sliders give the light of radiosity solve --set", async (t) => {
   const milliseconds = Number(await page.locator("#relight-facts").getAttribute("data-milliseconds"));
   t.diagnostic(`relit 1,981 patches in ${milliseconds.toFixed(0)} ms`);
   assert.ok(milliseconds < 1000, `${milliseconds} ms`); // 100 on a quiet machine
-  const options = (await text("command")).split(" ").slice(3);
+  const options = await setOptions(page);
   assert.equal(options.filter((word) => word === "--set").length, 3);
   execFileSync(program, [
     "solve",
@@ -209,7 +200,7 @@ test("where patches are summed to nodes sliders give the light of radiosity solv
   const patches = Array.from({ length: 40 }, (_, k) => 5 + 87 * k);
   const both = async () => {
     await shared.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
-    const options = (await shared.locator("#command").textContent()).split(" ").slice(3);
+    const options = await setOptions(shared);
     const [file, relit] = ["nodes.h5", "nodes-relit.h5"].map((name) => join(folder, "pages", name));
     execFileSync(program, ["solve", file, ...options, "-o", relit, "--quiet"]);
     const truth = results("nodes-relit.h5");
@@ -257,7 +248,7 @@ test("a texture is kept: its sliders give the light of radiosity solve --set NAM
   const compare = async () => {
     await textured.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
     const [file, relit] = ["textured.h5", "textured-relit.h5"].map((name) => join(folder, "pages", name));
-    const options = (await command()).split(" ").slice(3);
+    const options = await setOptions(textured);
     execFileSync(program, ["solve", file, ...options, "-o", relit, "--quiet"]);
     const truth = results("textured-relit.h5");
     const patches = Array.from({ length: 29 }, (_, k) => 5 * k);
@@ -281,8 +272,9 @@ test("a texture is kept: its sliders give the light of radiosity solve --set NAM
   await compare();
   await textured.locator("#relight-reset").click();
   await range(control("screen", "strength", "range"), 1);
-  assert.equal(await textured.locator("#command-row").isVisible(), false);
-  assert.match(await textured.locator("#command-note").textContent(), /No option gives .* emission of screen/);
+  await textured.waitForFunction(() => !document.getElementById("command-note").hidden);
+  assert.deepEqual(await setOptions(textured), []);
+  assert.match(await textured.locator("#command-note").textContent(), /changed emission of screen/);
   // Its sky is white at the highest exposure, and so are surfaces.
   await textured.locator("#exposure").press("End");
   const sky = (await style(textured, "#stage", "backgroundColor")).match(/\d+/g).map(Number);

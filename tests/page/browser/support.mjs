@@ -52,6 +52,12 @@ export async function open(browser, name, options = {}) {
   return { page, said };
 }
 
+/** Of the page's command, the options that set lamps and materials. */
+export async function setOptions(page) {
+  const command = await page.locator("#command").textContent();
+  return [...command.matchAll(/(--set|--light|--sky) (\S+)/g)].flatMap(([, option, value]) => [option, value]);
+}
+
 /** Irradiance of patches as the page shows it. */
 export async function irradiance(page, patches) {
   const shown = [];
@@ -95,6 +101,20 @@ export async function colours(where) {
     return points;
   }, png);
 }
+/** The same grid of points of a PNG, with alpha. */
+export function pixels(file) {
+  const script = [
+    "import sys, json",
+    "from PIL import Image",
+    "shown = Image.open(sys.argv[1]).convert('RGBA')",
+    "image = Image.new('RGBA', shown.size, (0, 0, 0, 0))",
+    "image.alpha_composite(shown)",
+    "at = lambda x, y: (int((.05 + .1 * x) * image.width), int((.05 + .1 * y) * image.height))",
+    "print(json.dumps([list(image.getpixel(at(x, y))) for y in range(10) for x in range(10)]))",
+  ].join("\n");
+  return JSON.parse(execFileSync("/usr/bin/python3", ["-c", script, file]));
+}
+
 /** Root mean square. */
 export const apart = (a, b) => Math.sqrt(a.reduce((sum, x, k) => sum + (x - b[k]) ** 2, 0) / a.length);
 

@@ -1,0 +1,89 @@
+// The state of the page in the fragment of its address, so that a link shows the same: the camera, what is changed of
+// lamps and materials, and the controls that are not as at first.
+import type { Rgb } from "./container";
+import type { RelightPanel } from "./relight_panel";
+import { input, on } from "./ui";
+import type { Viewer } from "./viewer";
+
+/** Ids, in the order in which they are set. */
+const CONTROLS = [
+  "exposure", "tone", "outlines", "elements", "before-after", "split", "paint", "pick-first", "pick-second", "show"];
+/** Names of radio buttons. */
+const CHOICES = ["surfaces", "move"];
+const QUIET_MS = 300; // browsers allow so many changes of the address a second
+
+const chosen = (name: string) => document.querySelector<HTMLInputElement>(`input[name="${name}"]:checked`)!.value;
+const valueOf = (id: string) => (input(id).type === "checkbox" ? String(Number(input(id).checked)) : input(id).value);
+
+function setTo(id: string, value: string): void {
+  const control = input(id);
+  if (valueOf(id) === value) return;
+  if (control.type === "checkbox") control.checked = value === "1";
+  else control.value = value;
+  for (const event of ["input", "change"]) control.dispatchEvent(new Event(event, { bubbles: true }));
+}
+
+const readable = (text: string) => encodeURIComponent(text).replaceAll("%2C", ",").replaceAll("%3A", ":");
+const point = (text: string | undefined): Rgb | null => {
+  const numbers = text?.split(",").map(Number) ?? [];
+  return numbers.length === 3 && numbers.every(Number.isFinite) ? (numbers as Rgb) : null;
+};
+
+export class Fragment {
+  private readonly first: Record<string, string>;
+  private readonly firstView: string;
+  private waiting = 0; // a timer
+
+  /** `onUnknown`: of the parts of a link that this page lacks. */
+  constructor(private readonly viewer: Viewer, private readonly relight: RelightPanel,
+              private readonly onUnknown: (names: string[]) => void) {
+    this.first = this.controls();
+    this.firstView = JSON.stringify(viewer.control.words());
+    this.restore();
+    for (const event of ["light", "view", "picks"]) viewer.listen(event, () => this.changed());
+    viewer.control.listen(() => this.changed());
+    on("app", "change", () => this.changed());
+    on("app", "input", () => this.changed());
+    window.addEventListener("hashchange", () => this.restore());
+  }
+
+  /** The address of the page as it is now. */
+  link(): string {
+    const { control } = this.viewer;
+    const moved = JSON.stringify(control.words()) !== this.firstView;
+    const controls = Object.entries(this.controls()).filter(([name, value]) => value !== this.first[name]);
+    const all = [...(moved ? Object.entries(control.words()) : []), ...controls, ...Object.entries(this.relight.state())];
+    const text = all.map(([name, value]) => `${readable(name)}=${readable(value)}`).join("&");
+    return location.href.split("#")[0] + (text ? `#${text}` : "");
+  }
+
+  private controls(): Record<string, string> {
+    return Object.fromEntries([...CONTROLS.map((id) => [id, valueOf(id)]), ...CHOICES.map((name) => [name, chosen(name)])]);
+  }
+
+  private changed(): void {
+    window.clearTimeout(this.waiting);
+    this.waiting = window.setTimeout(() => history.replaceState(null, "", this.link()), QUIET_MS);
+  }
+
+  private restore(): void {
+    const state = new Map(new URLSearchParams(location.hash.slice(1)));
+    const take = (name: string) => {
+      const value = state.get(name);
+      state.delete(name);
+      return value;
+    };
+    const eye = point(take("eye")), target = point(take("target"));
+    if (eye && target) this.viewer.control.place(eye, target);
+    else this.viewer.resetView();
+    this.relight.restore(state);
+    for (const name of CHOICES) {
+      const value = take(name) ?? this.first[name]!;
+      for (const radio of document.querySelectorAll<HTMLInputElement>(`input[name="${name}"]`)) {
+        if (radio.value === value) radio.click();
+      }
+    }
+    for (const id of CONTROLS) setTo(id, take(id) ?? this.first[id]!);
+    this.onUnknown([...state.keys()]);
+  }
+}
