@@ -22,8 +22,8 @@ struct PageOptions {
   Camera camera;        ///< the first view
   double exposure = 0;  ///< EV, as autoExposure(): radiance B / pi is multiplied by 2^exposure
   double crease = 30;   ///< degrees; smooth shading shares no values across sharper edges
-  /// The file and options by which `radiosity render` draws this light, as a shell reads them; empty:
-  /// not known.
+  /// The file and options by which `radiosity render` draws this light, as a shell reads them;
+  /// empty: not known.
   std::string arguments;
 };
 

@@ -69,8 +69,8 @@ void summarizePage(Report& report, const Picture& picture, double ev, const Page
   report.bytes("packed_bytes", "data in the file", page.packed_bytes);
 }
 
-/// What chooses the scene and its light, as a shell reads it: the results file if one is written, else
-/// the arguments without those of the run and of the picture, which a page changes.
+/// What chooses the scene and its light, as a shell reads it: the results file if one is written,
+/// else the arguments without those of the run and of the picture, which a page changes.
 std::string sceneArguments(const Request& request, const OutputSet& files) {
   if (files.has(Format::results)) return shellWord(files.path(Format::results));
   constexpr const char* kOwn[] = {"-o",       "--output", "--report", "--time-limit", "--threads",

@@ -214,7 +214,9 @@ class FieldBuilder {
                          edge > rule_.steep_fraction * smallest;
       node.tested = !isDark(node) &&
                     ((edge > smallest && (node.forced || found >= rule_.least_spread)) || steep);
-      if (node.tested && points_.size() + 5 > most_points_) {
+      if (rule_.like != nullptr) {
+        node.tested = rule_.like->elements[node.element].tested != 0;
+      } else if (node.tested && points_.size() + 5 > most_points_) {
         node.tested = false;
         ++out_.unrefined;
       }
@@ -279,8 +281,9 @@ class FieldBuilder {
     parallelFor(nodes.size(), 64, [&](std::size_t i) {
       Node& node = nodes[i];
       node.error = 0;
-      node.wants_cut = false;
-      if (!node.tested) return;
+      node.wants_cut =
+          rule_.like != nullptr && rule_.like->elements[node.element].first_child != kNone;
+      if (rule_.like != nullptr || !node.tested) return;
       const Element& element = out_.field.elements[node.element];
       const Index* p = out_.field.points.data() + element.first_point;
       const std::size_t n = node.corners();
@@ -313,6 +316,7 @@ class FieldBuilder {
   /// If all cuts would take more vertices than allowed, cuts only the elements with the largest
   /// errors.
   void limit(std::vector<Node>& nodes) {
+    if (rule_.like != nullptr) return;
     constexpr std::size_t kNewVertices = 16;  // of four tested children, at most
     std::vector<Index> wanting;
     for (Index k = 0; k < nodes.size(); ++k) {

@@ -84,6 +84,9 @@ struct RefinementRule {
   /// A root with longer edges is cut for any values.
   double longest_edge = 0;
   bool keep_lights = false;  ///< FieldSummary::lights are wanted
+  /// A field of the same surface, all of it shown: elements are cut as they are there, whatever the
+  /// other rules say; or null.
+  const ElementField* like = nullptr;
 };
 
 /// A field and its figures.

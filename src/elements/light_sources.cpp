@@ -17,12 +17,6 @@ namespace {
 
 // Lengths are shares of the scene's diagonal.
 
-/// The inset for direct light, which changes in steps where bodies touch.
-constexpr Inset kDirectInset{1e-5, 0.1};
-/// The inset for indirect light, which falls steeply towards creases. With vertices on the creases,
-/// linear interpolation would be too low there, and all over surfaces smaller than an element.
-/// Vertices at the Gauss points of the outermost elements give the right means.
-constexpr Inset kIndirectInset{0.0015, 0.21};
 /// The edge to which the tolerance applies.
 constexpr double kReferenceEdge = 0.05;
 /// The longest edge of elements that may be shaded.

@@ -21,6 +21,13 @@ struct Inset {
   double of_height;    ///< ... but at most of a root's least height: a sliver's vertices stay on it
 };
 
+/// The inset for direct light, which changes in steps where bodies touch.
+inline constexpr Inset kDirectInset{1e-5, 0.1};
+/// The inset for indirect light, which falls steeply towards creases. With vertices on the creases,
+/// linear interpolation would be too low there, and all over surfaces smaller than an element.
+/// Vertices at the Gauss points of the outermost elements give the right means.
+inline constexpr Inset kIndirectInset{0.0015, 0.21};
+
 /// A vertex of elements.
 struct SurfacePoint {
   Vec3 place{0.0};     ///< of the element's corner

@@ -13,12 +13,8 @@ namespace {
 
 constexpr std::size_t kMostEmittedBytes = 32u << 20;
 
-struct Emitter {
-  std::size_t material;
-  double power;  ///< W, all bands
-};
+}  // namespace
 
-/// Materials that emit, the brightest first.
 std::vector<Emitter> emittersOf(const Scene& scene, const PatchMesh& mesh,
                                 const PatchMaterials& materials) {
   const auto bands = std::size_t(materials.bands);
@@ -34,8 +30,6 @@ std::vector<Emitter> emittersOf(const Scene& scene, const PatchMesh& mesh,
   std::ranges::stable_sort(emitters, std::ranges::greater(), &Emitter::power);
   return emitters;
 }
-
-}  // namespace
 
 void addLights(const PatchMaterials& materials, const PatchMesh& mesh, const FormFactors& factors,
                Progress& progress, Container& container) {

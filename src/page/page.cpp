@@ -6,6 +6,7 @@
 
 #include "base/figure_text.h"
 #include "page/container.h"
+#include "page/elements.h"
 #include "page/eyes.h"
 #include "page/factor_codes.h"
 #include "page/header.h"
@@ -71,8 +72,10 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
   addPatches(mesh, colours, origin, container);
   addLights(pipeline.materials(), mesh, factors, progress, container);
   addFactors(nodes, codes, container);
-  if (!nodes.arePatches()) addEmitted(scene, mesh, pipeline.materials(), matrix, container);
-  report.element_triangles = addElements(mesh, light, options.crease, origin, container);
+  if (!nodes.arePatches() || light.elements)
+    addEmitted(scene, mesh, pipeline.materials(), matrix, container);
+  report.element_triangles =
+      addElements(pipeline, light, options.crease, origin, progress, container);
   report.nodes = nodes.arePatches() ? 0 : nodes.size();
   report.pairs = codes.pairs;
   report.quantisation = codes.quantisation;

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "results/lit_triangles.h"
-#include "results/lit_vertices.h"
-
 namespace radiosity::page {
 
 namespace {
@@ -118,35 +115,6 @@ void addSurfaces(const PatchMesh& mesh, double crease, const Vec3& origin, Conta
   container.add("shading_patch", shading.patch);
   container.add("shading_weight", shading.weight);
   container.add("edge", outlineEdges(mesh));
-}
-
-std::size_t addElements(const PatchMesh& mesh, const SurfaceLight& light, double crease,
-                        const Vec3& origin, Container& container) {
-  std::vector<Vec3> positions;
-  std::vector<float> radiosities;
-  std::vector<std::uint32_t> triangles;
-  if (light.elements) {
-    const std::vector<double> corners = cornerValues(mesh, light.patches, 3, crease);
-    LitTriangles lit(mesh, light.patches, corners, &light);
-    LitVertices vertices;
-    std::vector<LitCorner> triple;
-    for (std::size_t i = 0; i < mesh.size(); ++i) {
-      triple.clear();
-      lit.append(Index(i), triple);
-      for (const LitCorner& corner : triple) {
-        const auto [vertex, is_new] = vertices.of(corner);
-        triangles.push_back(vertex);
-        if (is_new) positions.push_back(lit.position(corner.point));
-      }
-    }
-    for (const auto& value : vertices.radiosity()) {
-      radiosities.insert(radiosities.end(), value.begin(), value.end());
-    }
-  }
-  container.add("element_position", packed(positions, origin));
-  container.add("element_triangle", triangles);
-  container.add("element_light", radiosities);
-  return triangles.size() / 3;
 }
 
 }  // namespace radiosity::page

@@ -5,7 +5,6 @@
 
 #include "page/container.h"
 #include "radiosity/patch_mesh.h"
-#include "radiosity/render.h"
 
 namespace radiosity::page {
 
@@ -25,11 +24,6 @@ std::vector<std::uint32_t> outlineEdges(const PatchMesh& mesh);
 /// Adds position, patch_triangle, triangle_patch, triangle_corner, shading_* and edge. Positions
 /// are less `origin`.
 void addSurfaces(const PatchMesh& mesh, double crease, const Vec3& origin, Container& container);
-
-/// Adds element_*: the lit mesh of elements, the same as that of writeLitGlb(). Returns the number
-/// of triangles. If `light` has no elements, the arrays are empty and the result is 0.
-std::size_t addElements(const PatchMesh& mesh, const SurfaceLight& light, double crease,
-                        const Vec3& origin, Container& container);
 
 /// Three floats for each point, less `origin`.
 std::vector<float> packed(std::span<const Vec3> points, const Vec3& origin = Vec3(0.0));

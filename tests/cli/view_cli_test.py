@@ -101,7 +101,7 @@ class Pages(CliTest):
         self.run_program("view", DATA / "cornell-box.obj", "--patches", "300", "-o", "p.html",
                          "-o", "p.h5", "--elements", "off")
         page = self.page("p.html")
-        self.assertEqual(page["element_light"].size, 0)
+        self.assertEqual(page["element_irradiance"].size, 0)
         self.run_program("solve", "p.h5", "--set", "white.reflectance=.95", "--solve-tolerance",
                          "1e-9")
         white = [m["name"] for m in page.header["materials"]].index("white")

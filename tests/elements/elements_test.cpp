@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 
+#include "elements/direct_bands.h"
 #include "elements/surface_points.h"
 #include "radiosity/form_factors.h"
 #include "radiosity/solve.h"
@@ -673,6 +674,40 @@ TEST(Elements, ManySmallPatchesLeaveOthersTheirVertices) {
   ASSERT_GT(added, 1000u);
   // A cut takes up to 16 vertices.
   EXPECT_EQ(with(added + 16).elements.report.unrefined, 0u);
+}
+
+/// Two lamps over a floor, with a bar in between: bands of their own tell what each gives, by B-3
+/// of Howell where nothing is hidden, and sum to the light of both.
+TEST(Elements, DirectLightOfEachLampSumsToThatOfBoth) {
+  SceneBuilder builder;
+  builder.level(builder.surface("floor", 0.0), -2, -2, 2, 2, 0);
+  builder.level(builder.surface("left", 0.0, 1.0), -1.5, -1, -0.5, 1, 2, false);
+  builder.level(builder.surface("right", 0.0, 3.0), 0.5, -1, 1.5, 1, 2, false);
+  builder.box(builder.surface("bar", 0.5), {-0.1, -2, 0.8}, {0.1, 2, 1});
+  const ElementOptions options;
+  Lit lit(builder.scene(), 200, options);
+  PatchMaterials split{.bands = 2, .reflectance = {}, .emission = {}, .lights = {}};
+  for (std::size_t i = 0; i < lit.mesh.size(); ++i) {
+    const double emission = lit.materials.emission[3 * i];
+    split.emission.push_back(emission == 1 ? emission : 0);
+    split.emission.push_back(emission == 3 ? emission : 0);
+  }
+  const ElementField& both = lit.elements.direct;
+  const ElementField parts = directBands(lit.mesh, split, options, both, lit.quiet);
+  ASSERT_EQ(parts.vertices, both.vertices);
+  ASSERT_EQ(parts.points, both.points);
+  // The correction of interpolation, of up to a hundredth, is chosen by all light there.
+  for (std::size_t v = 0; v < both.vertices; ++v) {
+    const double whole = both.values[3 * v];
+    EXPECT_NEAR(parts.values[2 * v] + parts.values[2 * v + 1], whole, 0.01 * whole + 1e-12);
+  }
+  for (const double x : {-1.9, -1.0, -0.7}) {
+    const std::size_t patch = lit.patchAt("floor/floor", x, 0.3);
+    const std::size_t root = lit.lookup.rootAt(patch, {x, 0.3, 0});
+    double sum[2] = {};
+    ASSERT_TRUE(lit.lookup.add(parts, root, lit.lookup.place(root, {x, 0.3, 0}), sum));
+    EXPECT_NEAR(sum[0], rectangleFactor(-1.5 - x, -0.5 - x, -1 - 0.3, 1 - 0.3, 2), 0.005) << x;
+  }
 }
 
 TEST(Elements, OptionsOutOfRangeAreRefusedByName) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -456,41 +457,84 @@ TEST_F(PageElements, EqualTheTrianglesOfTheLitMesh) {
   const PageReader& page = made.page();
   const auto position = page.floats("element_position");
   const auto triangle = page.indices("element_triangle");
-  const auto light = page.floats("element_light");
-  ASSERT_EQ(light.size(), position.size());
+  const auto irradiance = page.floats("element_irradiance");
+  const auto patch = page.indices("element_patch");
+  const auto emission = page.floats("emission");
+  const auto reflectance = page.floats("reflectance");
+  ASSERT_EQ(irradiance.size(), position.size());
   const std::size_t count =
       writeLitGlb(path("lit.glb"), made.mesh(), made.light, made.options.exposure, 30);
   EXPECT_EQ(triangle.size(), 3 * count);
   EXPECT_EQ(made.report.element_triangles, count);
   const LitMesh lit = readLitMesh(path("lit.glb"));
-  // Triangles stand in another order: each as the sum of its corners' places and lights.
-  const auto key = [](const Vec3& place, const Vec3& value) {
+  // Triangles stand in another order: each is found by the sum of its corners' places, on either
+  // side by the sum of their lights.
+  const auto key = [](const Vec3& place) {
     const auto round = [](double x) { return std::llround(x * 1e5); };
-    return std::array{round(place.x), round(place.y), round(place.z),
-                      round(value.x), round(value.y), round(value.z)};
+    return std::array{round(place.x), round(place.y), round(place.z)};
   };
-  std::multiset<std::array<long long, 6>> here;
-  std::multiset<std::array<long long, 6>> there;
+  std::multimap<std::array<long long, 3>, Vec3> here;
   for (std::size_t t = 0; t < count; ++t) {
     Vec3 place(0.0);
     Vec3 value(0.0);
-    Vec3 glb_place(0.0);
-    Vec3 glb_value(0.0);
     for (std::size_t k = 0; k < 3; ++k) {
-      place += point(position, triangle[3 * t + k]);
-      value += point(light, triangle[3 * t + k]);
-      glb_place += lit.vertices[lit.triangles[t][k]];
-      glb_value += lit.colours[t][k];
+      const std::size_t v = triangle[3 * t + k];
+      place += point(position, v);
+      value += point(emission, patch[v]) + point(reflectance, patch[v]) * point(irradiance, v);
     }
-    here.insert(key(place, value));
-    there.insert(key(glb_place, glb_value));
+    here.emplace(key(place), value);
   }
-  EXPECT_EQ(here, there);
+  for (std::size_t t = 0; t < count; ++t) {
+    Vec3 place(0.0);
+    Vec3 value(0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      place += lit.vertices[lit.triangles[t][k]];
+      value += lit.colours[t][k];
+    }
+    const auto [first, last] = here.equal_range(key(place));
+    // Both are in single precision.
+    const auto found = std::find_if(first, last, [&](const auto& each) {
+      return glm::length(each.second - value) <= 1e-6 * (1 + glm::length(value));
+    });
+    ASSERT_NE(found, last) << "triangle " << t;
+    here.erase(found);
+  }
+}
+
+/// A lamp, and a point that hangs over the floor: what the point gives directly, of all light
+/// there, is I cos / r^2.
+TEST_F(PageElements, KnowWhatEachLampGivesDirectly) {
+  Scene scene = dataScene("cornell-box.obj");
+  scene.lights.push_back(lightOf("point,10,at=.08,.3,.08"));
+  Made made(std::move(scene), 100, true);
+  const PageReader& page = made.page();
+  const auto& lamps = page.header["element_lamps"];
+  ASSERT_EQ(lamps.size(), 2u);
+  EXPECT_TRUE(lamps[0].contains("material"));
+  EXPECT_EQ(lamps[1]["light"], 0);
+  const auto position = page.floats("element_position");
+  const auto irradiance = page.floats("element_irradiance");
+  const auto patch = page.indices("element_patch");
+  const auto normal = page.floats("normal");
+  const auto shares = page.array<std::uint16_t>("element_share_1");
+  const auto origin = page.header["origin"].get<std::vector<double>>();
+  std::size_t seen = 0;
+  for (std::size_t v = 0; v < patch.size(); ++v) {
+    const Vec3 at = point(position, v) + Vec3(origin[0], origin[1], origin[2]);
+    const Vec3 to = Vec3(.08, .3, .08) - at;
+    if (std::abs(at.y) > 1e-6 || std::hypot(to.x, to.z) > .05) continue;
+    if (point(normal, patch[v]).y < .9) continue;
+    ++seen;
+    const double expected = 10 * to.y / std::pow(glm::length(to), 3);
+    // Interpolated values are raised to have the means, by up to a hundredth.
+    EXPECT_NEAR(irradiance[3 * v] * shares[3 * v] / 65535, expected, .01 * expected);
+  }
+  EXPECT_GT(seen, 3u);
 }
 
 TEST(PageData, MissingElementsLeaveTheirArraysEmpty) {
   const Made made(roomWithPlate(), 60);
-  EXPECT_TRUE(made.page().floats("element_light").empty());
+  EXPECT_TRUE(made.page().floats("element_irradiance").empty());
   EXPECT_EQ(made.report.element_triangles, 0u);
 }
 

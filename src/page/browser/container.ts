@@ -52,6 +52,7 @@ export interface Header {
     largest_relative_error: number;
     largest_row_error: number;
   };
+  element_lamps: { material?: number; light?: number }[]; // whose direct light elements have by itself
   arrays: Record<string, { type: string; offset: number; length: number }>;
 }
 
@@ -90,7 +91,10 @@ export interface PageData {
   order: Uint32Array | null; // K: the order of nodes in the program's Gauss-Seidel
   elementPosition: Float32Array;
   elementTriangle: Uint32Array;
-  elementLight: Float32Array; // radiosity at each element vertex
+  elementIrradiance: Float32Array; // Q*3, W/m^2
+  elementPatch: Uint32Array; // Q: a patch with its material
+  /** Q*3 of each of `element_lamps`: its direct share of the irradiance, of 65535. */
+  elementShare: Uint16Array[];
 }
 
 const MAGIC = "RADPAGE1";
@@ -165,7 +169,10 @@ function check(data: PageData): void {
   requireLength("shading_weight", data.shadingWeight, data.shadingPatch.length);
   if (data.eyePosition.length > 3 * vertices) requireLength("eye_position", data.eyePosition, 3 * vertices);
   for (const name of ["eyeNormal", "eyeAxis"] as const) requireLength(name, data[name], data.eyePosition.length);
-  requireLength("element_light", data.elementLight, data.elementPosition.length);
+  requireLength("element_irradiance", data.elementIrradiance, data.elementPosition.length);
+  requireLength("element_patch", data.elementPatch, data.elementPosition.length / 3);
+  for (const share of data.elementShare) requireLength("element_share", share, data.elementPosition.length);
+  requireBelow("element_patch", data.elementPatch, n);
   requireBelow("patch_triangle", data.patchTriangle, data.position.length / 3);
   requireBelow("triangle_patch", data.trianglePatch, n);
   requireBelow("triangle_corner", data.triangleCorner, vertices);
@@ -217,7 +224,9 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     order: "order" in header.arrays ? u32("order") : null,
     elementPosition: f32("element_position"),
     elementTriangle: u32("element_triangle"),
-    elementLight: f32("element_light"),
+    elementIrradiance: f32("element_irradiance"),
+    elementPatch: u32("element_patch"),
+    elementShare: header.element_lamps.map((_, k) => view(buffer, header, `element_share_${k}`, "u16")),
   };
   check(data);
   return data;

@@ -49,7 +49,7 @@ export function nodeMeans(data: PageData, values: Float32Array): Float32Array {
 }
 
 /** Adds values, times a factor for each band. */
-function addTimes(sum: Float32Array, values: Float32Array, factor: Rgb): void {
+export function addTimes(sum: Float32Array, values: Float32Array, factor: Rgb): void {
   for (let k = 0; k < sum.length; ++k) sum[k] = sum[k]! + factor[k % BANDS]! * values[k]!;
 }
 
@@ -58,18 +58,30 @@ function timesBefore(before: Rgb, now: Rgb): Rgb {
   return now.map((value, b) => (before[b]! > 0 ? value / before[b]! : 1)) as Rgb;
 }
 
-/**
- * The irradiance of patches, N*3, by each lamp whose light is known patch by patch: lights without a surface, with
- * a factor each, and, where patches are summed to nodes, what emits.
- */
-export function directIrradiance(data: PageData, states: MaterialState[], lights: Rgb[]): Float32Array {
+/** How many times what it was each material's emission is, and each light. */
+export interface Factors {
+  materials: Rgb[];
+  lights: Rgb[];
+}
+
+export function factorsOf(data: PageData, states: MaterialState[], lights: Rgb[]): Factors {
+  const { materials } = data.header;
+  return { materials: materials.map(({ emission }, m) => timesBefore(emission, states[m]!.emission)), lights };
+}
+
+/** The irradiance of patches, N*3, by each lamp whose light is known patch by patch. */
+export function lampIrradiance(data: PageData, factors: Factors): Float32Array {
   const sum = new Float32Array(data.area.length * BANDS);
-  data.lightIrradiance.forEach((irradiance, l) => addTimes(sum, irradiance, lights[l]!));
+  data.lightIrradiance.forEach((irradiance, l) => addTimes(sum, irradiance, factors.lights[l]!));
   data.emittedIrradiance.forEach((irradiance, m) => {
-    const before = data.header.materials[m]!.emission;
-    if (irradiance) addTimes(sum, irradiance, timesBefore(before, states[m]!.emission));
+    if (irradiance) addTimes(sum, irradiance, factors.materials[m]!);
   });
   return sum;
+}
+
+/** Of that, what form factors do not give the solver: if these are between patches, lights without a surface alone. */
+export function directIrradiance(data: PageData, factors: Factors): Float32Array {
+  return lampIrradiance(nodesArePatches(data) ? { ...data, emittedIrradiance: [] } : data, factors);
 }
 
 /** Light of which the mean over nodes and the rest, which follows it, are known: as the page has it. */
@@ -172,7 +184,7 @@ export function materialsOfNodes(
   const emission = light.emission.slice();
   for (let i = 0; i < data.area.length; ++i) {
     const m = surfaces[data.surface[i]!]!.material;
-    if (!data.emittedIrradiance[m]) continue;
+    if (nodesArePatches(data) || !data.emittedIrradiance[m]) continue;
     for (let b = 0; b < BANDS; ++b) if (data.header.materials[m]!.emission[b]! > 0) emission[i * BANDS + b] = 0;
   }
   return {

@@ -45,6 +45,15 @@ export class SceneMeshes {
     this.fill("lightBefore", before, 3, this.surfaces === "smooth");
   }
 
+  /** Radiosity of element vertices, now and before. */
+  setElementLight(now: Float32Array, before: Float32Array): void {
+    for (const [name, values] of [["light", now], ["lightBefore", before]] as const) {
+      const attribute = this.elements.geometry.getAttribute(name) as BufferAttribute;
+      (attribute.array as Float32Array).set(values);
+      attribute.needsUpdate = true;
+    }
+  }
+
   /** Sets the values for false colour, N, now and before; `smooth`: they may be interpolated. */
   setValues(now: Float32Array, before: Float32Array, smooth: boolean): void {
     this.values = { now, before, smooth };
@@ -109,7 +118,8 @@ export class SceneMeshes {
   private elementGeometry(): BufferGeometry {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(this.data.elementPosition, 3));
-    geometry.setAttribute("light", new BufferAttribute(this.data.elementLight, 3));
+    const count = this.data.elementPatch.length;
+    for (const name of ["light", "lightBefore"]) geometry.setAttribute(name, dynamic(count, 3));
     geometry.setIndex(new BufferAttribute(this.data.elementTriangle, 1));
     return geometry;
   }

@@ -91,7 +91,7 @@ export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
   });
 }
 
-/** The mesh of elements; attribute light. */
+/** The mesh of elements; attributes light, lightBefore. */
 export function elementMaterial(uniforms: Uniforms): ShaderMaterial {
   return new ShaderMaterial({
     uniforms,
@@ -100,10 +100,11 @@ export function elementMaterial(uniforms: Uniforms): ShaderMaterial {
     polygonOffsetFactor: 1,
     polygonOffsetUnits: 1,
     vertexShader: /* glsl */ `
-      attribute vec3 light;
+      attribute vec3 light, lightBefore;
+      uniform bool before;
       varying vec3 vLight;
       void main() {
-        vLight = light;
+        vLight = before ? lightBefore : light;
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: /* glsl */ `

@@ -3,13 +3,14 @@
 import { Color, Vector3 } from "three";
 import { TriangleTree } from "./bvh";
 import { CameraControl } from "./camera";
+import { FineLight } from "./fine_light";
 import { redBlue, viridis, type ColourMap } from "./colour";
 import type { PageData, Rgb } from "./container";
 import { automaticRange, extremes, NO_VALUE, type Range, type Scale } from "./false_colour";
 import {
-  background, directIrradiance, luminance, materialsOfNodes, nodeMeans, nodesArePatches, patchIrradiance, radiosityOf,
+  background, directIrradiance, factorsOf, lampIrradiance, luminance, materialsOfNodes, nodeMeans, nodesArePatches, patchIrradiance, radiosityOf,
   withMaterials, type StoredLight,
-  type MaterialState, type PatchLight,
+  type Factors, type MaterialState, type PatchLight,
 } from "./light";
 import type { Method } from "./methods";
 import type { Frame, Materials } from "./protocol";
@@ -51,8 +52,11 @@ export class Viewer {
 
   private readonly maps = { rising: this.uniforms.map.value, diverging: mapTexture(redBlue) };
   private readonly tree: TriangleTree;
+  private readonly fine: FineLight;
+  private readonly fineStored: Float32Array; // radiosity of element vertices
   private reference: StoredLight | null = null; // where nodes are clusters of patches
-  private direct: Float32Array; // N*3, with the present lamps
+  private direct: Float32Array; // N*3, with the present lamps: directIrradiance()
+  private lamps: Float32Array; // N*3, likewise: lampIrradiance()
   solved: PatchLight; // by the matrix, for the present materials
   private materials: Materials;
   private runs = 0;
@@ -65,9 +69,12 @@ export class Viewer {
     this.light = this.solved = this.stored;
     this.states = this.storedStates();
     this.lights = this.storedLights();
-    this.direct = directIrradiance(data, this.states, this.lights);
+    this.direct = directIrradiance(data, this.factors);
+    this.lamps = lampIrradiance(data, this.factors);
     this.materials = materialsOfNodes(data, this.stored, this.direct);
     this.meshes = new SceneMeshes(data, this.uniforms);
+    this.fine = new FineLight(data, this.stored);
+    this.fineStored = this.fine.before();
     this.control = new CameraControl(canvas, data.header);
     this.stage = new Stage(canvas, this.meshes, this.control, this.uniforms);
     this.tree = new TriangleTree(data.position, data.patchTriangle);
@@ -76,6 +83,8 @@ export class Viewer {
     this.pivotOnScene();
     this.refreshLight();
   }
+
+  private get factors(): Factors { return factorsOf(this.data, this.states, this.lights); }
 
   /** Whether form factors are between clusters of patches. */
   get clustered(): boolean { return !nodesArePatches(this.data); }
@@ -122,7 +131,11 @@ export class Viewer {
 
   /** Solves again with `states` and `lights`. */
   relight(): void {
-    this.solved = { ...withMaterials(this.data, this.states), irradiance: this.solved.irradiance };
+    // What lamps give directly is there at once; what is reflected follows.
+    const before = this.lamps;
+    this.lamps = lampIrradiance(this.data, this.factors);
+    const irradiance = this.solved.irradiance.map((h, k) => Math.max(0, h + this.lamps[k]! - before[k]!));
+    this.solved = { ...withMaterials(this.data, this.states), irradiance };
     this.setMaterials();
     this.solver.relight(this.materials);
     this.showSolved();
@@ -130,6 +143,7 @@ export class Viewer {
 
   toStored(): void {
     this.solved = this.stored;
+    this.lamps = lampIrradiance(this.data, this.factors);
     this.setMaterials();
     this.showSolved();
   }
@@ -214,7 +228,8 @@ export class Viewer {
 
   /** Whether the light is drawn finer than patches. */
   get showsElements(): boolean {
-    return this.elements && this.source === "stored" && this.meshes.hasElements && this.meshes.surfaces === "smooth";
+    const isSolved = this.source === "stored" || this.source === "relit";
+    return this.elements && isSolved && this.meshes.hasElements && this.meshes.surfaces === "smooth";
   }
 
   setSurfaces(surfaces: Surfaces): void {
@@ -276,7 +291,7 @@ export class Viewer {
   }
 
   private setMaterials(): void {
-    this.direct = directIrradiance(this.data, this.states, this.lights);
+    this.direct = directIrradiance(this.data, this.factors);
     this.materials = materialsOfNodes(this.data, this.solved, this.direct);
   }
 
@@ -292,6 +307,10 @@ export class Viewer {
 
   private refreshLight(): void {
     this.meshes.setLight(radiosityOf(this.light), radiosityOf(this.before));
+    if (this.source === "stored") this.meshes.setElementLight(this.fineStored, this.fineStored);
+    if (this.source === "relit") {
+      this.meshes.setElementLight(this.fine.of(this.light, this.factors), this.fineStored);
+    }
     this.refreshValues();
     this.tell("light");
   }

@@ -1,9 +1,8 @@
 // What a visitor takes away: a link that shows the same, pictures, the command that draws the same.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { apart, colours, folder, launch, open, pixels, program } from "./support.mjs";
+import { apart, colours, commandPicture, launch, open, pixels, saved } from "./support.mjs";
 
 let browser;
 before(async () => {
@@ -21,14 +20,6 @@ const set = (locator, value) =>
 const solved = (page) =>
   page.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
 const unfold = (page) => page.evaluate(() => document.getElementById("share-panel").setAttribute("open", ""));
-
-/** Clicks a button and saves what it gives. */
-async function saved(page, button) {
-  const [download] = await Promise.all([page.waitForEvent("download"), page.locator(button).click()]);
-  const file = join(folder, "pages", download.suggestedFilename());
-  await download.saveAs(file);
-  return file;
-}
 
 test("a link restores the view, sliders, picks and looks", async () => {
   const { page, said } = await open(browser, "small.html", wide);
@@ -95,10 +86,7 @@ test("the command draws the picture that the page saves; the poster has twice it
     await unfold(page);
     await page.waitForTimeout(400);
     const mine = pixels(await saved(page, "#save-picture"));
-    const shell = (await page.locator("#command").textContent()).replace("radiosity", `'${program}' --quiet`);
-    const words = shell.replace("--quiet render", "render --quiet");
-    const theirs = join(folder, "pages", "command.png");
-    execFileSync("/bin/sh", ["-c", words.replace(/-o \S+$/, `-o '${theirs}'`)]);
+    const [theirs, words] = await commandPicture(page, "command.png");
     const pairs = pixels(theirs).map((p, k) => [p, mine[k]]).filter(([p, m]) => p[3] === 255 && m[3] === 255);
     assert.ok(pairs.length > 60, `${pairs.length} points`);
     const difference = apart(pairs.flatMap(([p]) => p.slice(0, 3)), pairs.flatMap(([, m]) => m.slice(0, 3)));

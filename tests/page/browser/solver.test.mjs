@@ -10,7 +10,7 @@ const solver = await module("solver");
 const { Relight } = await module("relight");
 const { VectorProduct } = await module("vector_product");
 const { Session } = await module("session");
-const { directIrradiance, materialsOfNodes, nodeMeans, patchIrradiance, radiosityOf, withMaterials } = await module("light");
+const { directIrradiance, factorsOf, materialsOfNodes, nodeMeans, patchIrradiance, radiosityOf, withMaterials } = await module("light");
 const { TriangleTree } = await module("bvh");
 const { readContainer } = await module("container");
 
@@ -247,7 +247,7 @@ test("a lamp of twice the power is solved for at once; new reflectances to 1e-3"
 test("where patches are summed to nodes the stored light comes back, and a lamp alone scales it", async () => {
   const nodes = await pageData("nodes.html");
   const before = nodes.header.materials.map(({ reflectance, emission }) => ({ reflectance, emission }));
-  const direct = directIrradiance(nodes, before, []);
+  const direct = directIrradiance(nodes, factorsOf(nodes, before, []));
   const materials = materialsOfNodes(nodes, withMaterials(nodes, before), direct);
   assert.ok(materials.emission.every((e) => e === 0)); // each lamp is known patch by patch
   const session = new Session({
@@ -259,7 +259,7 @@ test("where patches are summed to nodes the stored light comes back, and a lamp 
   assert.ok(relativeError(again, nodes.irradiance) < 1e-4);
 
   const bright = before.map(({ reflectance, emission }) => ({ reflectance, emission: emission.map((e) => 3 * e) }));
-  const tripled = directIrradiance(nodes, bright, []);
+  const tripled = directIrradiance(nodes, factorsOf(nodes, bright, []));
   const relit = session.relight(materialsOfNodes(nodes, withMaterials(nodes, bright), tripled), 10000);
   const three = patchIrradiance(nodes, relit.irradiance, tripled, reference);
   // Relighting ends at 5e-5 of the mean irradiance.

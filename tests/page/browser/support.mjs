@@ -38,12 +38,12 @@ export function launch() {
 }
 
 /** A page that was loaded, and what its console said. */
-export async function open(browser, name, options = {}) {
+export async function open(browser, name, options = {}, fragment = "") {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, reducedMotion: "reduce", ...options });
   const said = [];
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));
-  await page.goto(`file://${join(folder, "pages", name)}`);
+  await page.goto(`file://${join(folder, "pages", name)}${fragment}`);
   await page.waitForFunction(
     () => document.documentElement.dataset.ready || document.querySelector("#loading.failed"),
     null,
@@ -56,6 +56,23 @@ export async function open(browser, name, options = {}) {
 export async function setOptions(page) {
   const command = await page.locator("#command").textContent();
   return [...command.matchAll(/(--set|--light|--sky) (\S+)/g)].flatMap(([, option, value]) => [option, value]);
+}
+
+/** Clicks a button and saves what it gives. */
+export async function saved(page, button) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.locator(button).click()]);
+  const file = join(folder, "pages", download.suggestedFilename());
+  await download.saveAs(file);
+  return file;
+}
+
+/** Runs the page's command as a shell does. The picture's file, and the command. */
+export async function commandPicture(page, name) {
+  const file = join(folder, "pages", name);
+  const command = await page.locator("#command").textContent();
+  const words = command.replace("radiosity render", `'${program}' render --quiet`).replace(/-o \S+$/, `-o '${file}'`);
+  execFileSync("/bin/sh", ["-c", words]);
+  return [file, command];
 }
 
 /** Irradiance of patches as the page shows it. */
