@@ -25,6 +25,7 @@ struct PageOptions {
   /// The file and options by which `radiosity render` draws this light, as a shell reads them;
   /// empty: not known.
   std::string arguments;
+  bool heat = false;  ///< with the pipeline's heat(), which is shown first
 };
 
 /// The loss of form factors in 16 bits, which hold their logarithms in equal steps.

@@ -4,6 +4,7 @@
 
 #include "cli/matrix_commands.h"
 #include "cli/radiant.h"
+#include "cli/stored_conditions.h"
 #include "radiosity/results.h"
 
 namespace radiosity::cli {
@@ -31,16 +32,9 @@ ConditionText givenConditions(const Request& request) {
 /// The given conditions, or else those of the heat in the results file.
 HeatConditions conditionsFor(Session& session, const Pipeline& pipeline) {
   const Request& request = session.request;
-  const Keyed<HeatSolution>& stored = pipeline.stored().heat;
-  const bool kept = pipeline.fromResultsFile() && stored && !stored->conditions.empty();
-  if (givesConditions(request) || !kept) {
-    return readHeatConditions(pipeline.scene(), givenConditions(request));
-  }
-  session.report.line("conditions", "those in " + request.input);
-  ConditionText text = stored->conditions;
-  text.origin = request.input + ": /heat/condition_table";
-  text.groups.insert(text.groups.begin(), request.groups.begin(), request.groups.end());
-  return readHeatConditions(pipeline.scene(), text);
+  std::optional<HeatConditions> kept;
+  if (!givesConditions(request)) kept = storedConditions(session, pipeline);
+  return kept ? *kept : readHeatConditions(pipeline.scene(), givenConditions(request));
 }
 
 /// Notes options that affect light but not heat; reflectances may count as emissivities.
@@ -64,6 +58,17 @@ void noteLightOptions(Session& session, bool materials_are_used) {
 }
 
 }  // namespace
+
+std::optional<HeatConditions> storedConditions(Session& session, const Pipeline& pipeline) {
+  const Request& request = session.request;
+  const Keyed<HeatSolution>& stored = pipeline.stored().heat;
+  if (!pipeline.fromResultsFile() || !stored || stored->conditions.empty()) return std::nullopt;
+  session.report.line("conditions", "those in " + request.input);
+  ConditionText text = stored->conditions;
+  text.origin = request.input + ": /heat/condition_table";
+  text.groups.insert(text.groups.begin(), request.groups.begin(), request.groups.end());
+  return readHeatConditions(pipeline.scene(), text);
+}
 
 int runHeat(Session& session) {
   OutputSet files = claimOutputs(session);

@@ -9,6 +9,7 @@
 #include "cli/desktop.h"
 #include "cli/element_use.h"
 #include "cli/picture.h"
+#include "cli/stored_conditions.h"
 #include "cli/summaries.h"
 #include "cli/words.h"
 #include "radiosity/page.h"
@@ -91,12 +92,23 @@ std::string sceneArguments(const Request& request, const OutputSet& files) {
   return text;
 }
 
-void writePages(Session& session, Pipeline& pipeline, bool elements, OutputSet& files) {
+/// Solves for the heat of the results file, or finds it there. False if it has none.
+bool hasHeat(Session& session, Pipeline& pipeline) {
+  std::optional<HeatConditions> conditions = storedConditions(session, pipeline);
+  if (!conditions) return false;
+  pipeline.options().heat_conditions = std::move(*conditions);
+  return true;
+}
+
+void writePages(Session& session, Pipeline& pipeline, bool elements, bool heat, OutputSet& files) {
   const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
   const ExposedPicture shown = exposePicture(session, pipeline, light);
-  const PageOptions options{fs::path(session.request.input).stem().string(), shown.picture.camera,
-                            shown.ev, shown.picture.options.crease,
-                            sceneArguments(session.request, files)};
+  const PageOptions options{fs::path(session.request.input).stem().string(),
+                            shown.picture.camera,
+                            shown.ev,
+                            shown.picture.options.crease,
+                            sceneArguments(session.request, files),
+                            heat};
   PageReport page;
   files.write(Format::page, "page, opens in a browser", [&](const std::string& temporary) {
     page = writePage(temporary, pipeline, light, options, session.progress);
@@ -125,12 +137,14 @@ int runView(Session& session) {
   Pipeline& pipeline = run.pipeline;
   requireColours(pipeline, request, files);
   requireOneEstimate(request, pipeline.options().factors);
-  requireLight(session, pipeline);
+  const bool heat = hasHeat(session, pipeline);
+  if (!heat) requireLight(session, pipeline);
   requirePageFits(request.input, pipeline.mesh().mesh);
   if (!files.has(Format::results) && pipeline.onlyAdds()) {
     files.add({request.input, Format::results});
   }
   pipeline.factors();
+  if (heat) pipeline.heat();
   keepFactors(session, pipeline, files);
   const int code = judgeSolution(session, pipeline);
   if (pipeline.solution().summary.status == SolveStatus::singular) {
@@ -138,7 +152,7 @@ int runView(Session& session) {
   }
   keepSolution(session, pipeline, files);
   if (elements.all) summarizeElements(session.report, pipeline.elements(), pipeline.factors());
-  writePages(session, pipeline, elements.shown, files);
+  writePages(session, pipeline, elements.shown, heat, files);
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);
   noteUnsaved(session, pipeline, files);

@@ -10,6 +10,7 @@
 #include "page/eyes.h"
 #include "page/factor_codes.h"
 #include "page/header.h"
+#include "page/heat.h"
 #include "page/html.h"
 #include "page/lamps.h"
 #include "page/nodes.h"
@@ -76,6 +77,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
     addEmitted(scene, mesh, pipeline.materials(), matrix, container);
   report.element_triangles =
       addElements(pipeline, light, options.crease, origin, progress, container);
+  if (options.heat) addHeat(pipeline, container);
   report.nodes = nodes.arePatches() ? 0 : nodes.size();
   report.pairs = codes.pairs;
   report.quantisation = codes.quantisation;

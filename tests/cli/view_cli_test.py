@@ -147,6 +147,21 @@ class Pages(CliTest):
         self.run_program("view", "box.obj", *BOX, *run, "-o", "p.html", "-o", "kept box.h5")
         self.assertEqual(self.page("p.html").header["arguments"], "'kept box.h5'")
 
+    def test_heat_of_a_results_file_is_on_its_page_also_without_light(self):
+        self.write("plates.obj", "o floor\nv 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nf 4 3 2 1\n"
+                                 "o plate\nv 0 1 0\nv 2 1 0\nv 2 1 2\nv 0 1 2\nf 5 6 7 8\n")
+        self.run_program("heat", "plates.obj", *BOX, "--condition", "*.emissivity=.9", "--condition",
+                         "floor.flux=100", "--condition", "plate.temperature=300", "-o", "s.h5")
+        self.run_program("view", "s.h5", "-o", "p.html")
+        page = self.page("p.html")
+        with h5py.File(self.folder / "s.h5") as file:
+            heat = file["heat"]
+            for name in ("temperature", "net_flux"):
+                np.testing.assert_allclose(page["heat_" + name], heat[name][()], rtol=1e-6, atol=1e-9)
+            for name in ("irradiance", "radiosity"):
+                np.testing.assert_allclose(page["heat_" + name], heat[name][()].sum(1), rtol=1e-6)
+        self.assertEqual([s["name"] for s in page.header["heat"]["surfaces"]], ["floor", "plate"])
+
     def test_one_band_is_grey(self):
         self.run_program("solve", "box.obj", *BOX, "-o", "s.h5")
         with h5py.File(self.folder / "s.h5", "r+") as file:

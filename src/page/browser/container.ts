@@ -17,6 +17,26 @@ export interface MaterialInfo {
   factor: Rgb; // reflectance that its texture multiplies; without one it is `reflectance`
 }
 
+/** Of a surface: K, W/m^2, W; null: undetermined. */
+export interface SurfaceHeat {
+  name: string;
+  area: number; // m^2
+  temperature: number | null; // mean
+  lowest: number | null;
+  highest: number | null;
+  net_flux: number; // that it gives off
+  radiated: number;
+  convected: number;
+}
+
+/** Heat exchange on patches. */
+export interface Heat {
+  temperature: Float32Array; // N, K; NaN: undetermined
+  netFlux: Float32Array; // N, W/m^2
+  irradiance: Float32Array; // N, W/m^2
+  radiosity: Float32Array; // N, W/m^2
+}
+
 /** A light without a surface, by its strength in `unit`. */
 export interface LightInfo {
   name: string;
@@ -52,6 +72,7 @@ export interface Header {
     largest_relative_error: number;
     largest_row_error: number;
   };
+  heat?: { message: string; surfaces: SurfaceHeat[] };
   element_lamps: { material?: number; light?: number }[]; // whose direct light elements have by itself
   arrays: Record<string, { type: string; offset: number; length: number }>;
 }
@@ -89,6 +110,7 @@ export interface PageData {
   factorColumn: Uint32Array; // empty: rows hold every column from the diagonal on
   factorCode: Uint16Array;
   order: Uint32Array | null; // K: the order of nodes in the program's Gauss-Seidel
+  heat: Heat | null;
   elementPosition: Float32Array;
   elementTriangle: Uint32Array;
   elementIrradiance: Float32Array; // Q*3, W/m^2
@@ -160,6 +182,7 @@ function check(data: PageData): void {
   for (const name of ["nodeArea", "rowSum"] as const) requireLength(name, data[name], k);
   for (const light of data.lightIrradiance) requireLength("light", light, n * 3);
   for (const light of data.emittedIrradiance) if (light) requireLength("emitted", light, n * 3);
+  for (const values of Object.values(data.heat ?? {})) requireLength("heat", values as Float32Array, n);
   if (data.rowError.length > 0) requireLength("row_error", data.rowError, k);
   requireLength("factor_begin", data.factorBegin, k + 1);
   requireLength("factor_code", data.factorCode, data.factorBegin[k]!);
@@ -222,6 +245,10 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     factorColumn: u32("factor_column"),
     factorCode: view(buffer, header, "factor_code", "u16"),
     order: "order" in header.arrays ? u32("order") : null,
+    heat: header.heat ? {
+      temperature: f32("heat_temperature"), netFlux: f32("heat_net_flux"), irradiance: f32("heat_irradiance"),
+      radiosity: f32("heat_radiosity"),
+    } : null,
     elementPosition: f32("element_position"),
     elementTriangle: u32("element_triangle"),
     elementIrradiance: f32("element_irradiance"),

@@ -13,6 +13,9 @@ const TITLES: Record<Show, string> = {
   "row-sum": "Row sum of form factors",
   "row-error": "Error figure of the row",
   "factors": "Form factor from the picked patch",
+  "temperature": "Temperature, K",
+  "net-flux": "Net flux of heat that is given off, W/m²",
+  "heat-irradiance": "Irradiance of heat, W/m²",
   "difference": "B less the matrix solution's (luminance), W/m²",
 };
 const EXPOSURE_STOPS = 8;
@@ -159,5 +162,13 @@ export function setUpLook(viewer: Viewer): void {
     viewer.elements = input("elements").checked;
     viewer.refreshView();
   });
+  if (viewer.data.heat) {
+    select("show").value = viewer.show = "temperature";
+    viewer.refreshValues();
+  } else {
+    for (const value of ["temperature", "net-flux", "heat-irradiance"]) {
+      select("show").querySelector(`[value="${value}"]`)?.remove();
+    }
+  }
   if (viewer.data.rowError.length === 0) select("show").querySelector('[value="row-error"]')?.remove();
 }

@@ -3,6 +3,7 @@ import { readContainer, type PageData } from "./container";
 import { ConvergePanel } from "./converge_panel";
 import { fail, isCutShort } from "./failure";
 import { GatherPanel } from "./gather_panel";
+import { setUpHeat } from "./heat_panel";
 import { setUpKeys } from "./keys";
 import { unpack } from "./load";
 import { setUpLook } from "./look_panel";
@@ -84,6 +85,7 @@ function setUpCamera(viewer: Viewer): void {
 function setUpPanels(viewer: Viewer): void {
   setUpLook(viewer);
   setUpPatch(viewer);
+  setUpHeat(viewer);
   const converge = new ConvergePanel(viewer);
   const relight = new RelightPanel(viewer, () => converge.forget());
   setUpCamera(viewer);

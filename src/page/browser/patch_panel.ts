@@ -34,10 +34,23 @@ function facts(viewer: Viewer, name: MarkName, { patch }: Picked): HTMLElement {
     ["Area, m²", number(data.area[patch]!)],
     ["Row sum", number(data.rowSum[node]!)],
   ];
+  if (data.heat) {
+    rows.push(["Temperature, K", number(data.heat.temperature[patch]!)]);
+    rows.push(["Net flux of heat, W/m²", number(data.heat.netFlux[patch]!)]);
+  }
   if (data.rowError.length > 0) rows.push(["Error figure of the row", number(data.rowError[node]!)]);
   if (viewer.clustered) rows.push(["Node of patches", number(node)]);
   return make("section", { "data-pick": name }, make("h3", { class: name }, `Patch ${patch}`), list(rows),
     bandTable(viewer, patch));
+}
+
+/** Of nodes i and j: the heat that i sends to j less what it gets from there. */
+function exchanged({ data }: Viewer, i: number, j: number, factorArea: number): [string, Node][] {
+  if (!data.heat) return [];
+  const { radiosity } = data.heat;
+  const mean = (k: number) => data.node.reduce((sum, node, patch) =>
+    (node === k ? sum + data.area[patch]! * radiosity[patch]! : sum), 0) / data.nodeArea[k]!;
+  return [["Net heat there, W", number(factorArea * (mean(i) - mean(j)))]];
 }
 
 function pair(viewer: Viewer): HTMLElement | string {
@@ -58,6 +71,7 @@ function pair(viewer: Viewer): HTMLElement | string {
     ["A F there, m²", number(power)],
     ["A F back, m²", number(powerBack)],
     ["Reciprocity, difference", number(apart)],
+    ...exchanged(viewer, i, j, power),
   ]), make("p", { class: "note" }, (viewer.clustered ? "Form factors are between nodes of patches that are near each other. " : "") +
     "One of each pair is stored; the other follows from A₁F₁₂ = A₂F₂₁."));
 }

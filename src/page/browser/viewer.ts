@@ -5,7 +5,7 @@ import { TriangleTree } from "./bvh";
 import { CameraControl } from "./camera";
 import { FineLight } from "./fine_light";
 import { redBlue, viridis, type ColourMap } from "./colour";
-import type { PageData, Rgb } from "./container";
+import type { Heat, PageData, Rgb } from "./container";
 import { automaticRange, extremes, NO_VALUE, type Range, type Scale } from "./false_colour";
 import {
   background, directIrradiance, factorsOf, lampIrradiance, luminance, materialsOfNodes, nodeMeans, nodesArePatches, patchIrradiance, radiosityOf,
@@ -20,7 +20,8 @@ import { SolverClient, type Relighting } from "./solver_client";
 import { type MarkName, Stage } from "./stage";
 import { freeStep } from "./walk";
 
-export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors" | "difference";
+export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors" | "difference" |
+  "temperature" | "net-flux" | "heat-irradiance";
 /** The source of the light that is shown. */
 export type Source = "stored" | "relit" | "run" | "gathered";
 
@@ -199,11 +200,12 @@ export class Viewer {
     return hit ? this.data.trianglePatch[hit.triangle]! : null;
   }
 
-  /** Whether some of the picture shows light: outside a room, or within a table, there is none. */
+  /** Whether some of the picture shows light, or a false colour: outside a room, or within a table, there is none. */
   seesLight(): boolean {
     const { clientWidth: width, clientHeight: height } = this.stage.canvas;
+    const falseColour = this.shown() !== "light";
     const lit = (patch: number | null) => patch !== null &&
-      [0, 1, 2].some((b) => this.light.irradiance[patch * 3 + b]! + this.light.emission[patch * 3 + b]! > 0);
+      (falseColour || [0, 1, 2].some((b) => this.light.irradiance[patch * 3 + b]! + this.light.emission[patch * 3 + b]! > 0));
     const places = Array.from({ length: LOOKS }, (_, k) => (k + 0.5) / LOOKS);
     return places.some((y) => places.some((x) => lit(this.patchAt(x * width, y * height))));
   }
@@ -257,7 +259,7 @@ export class Viewer {
   refreshValues(): void {
     const now = this.values(this.shown(), this.light);
     const before = this.values(this.shown(), this.before);
-    const smooth = ["radiosity", "irradiance", "difference"].includes(this.shown());
+    const smooth = ["radiosity", "irradiance", "difference", "heat-irradiance"].includes(this.shown());
     this.meshes.setValues(now, before, smooth);
     this.refreshView();
   }
@@ -274,11 +276,18 @@ export class Viewer {
       case "row-sum": return ofNode(data.rowSum);
       case "row-error": return ofNode(data.rowError);
       case "factors": return ofNode(this.picks.first?.row ?? null);
+      case "temperature": return this.ofHeat((heat) => heat.temperature);
+      case "net-flux": return this.ofHeat((heat) => heat.netFlux);
+      case "heat-irradiance": return this.ofHeat((heat) => heat.irradiance);
       case "difference": {
         const solved = luminance(radiosityOf(this.solved));
         return luminance(radiosityOf(light)).map((value, i) => value - solved[i]!);
       }
     }
+  }
+
+  private ofHeat(of: (heat: Heat) => Float32Array): Float32Array {
+    return of(this.data.heat!).map((value) => (Number.isNaN(value) ? NO_VALUE : value));
   }
 
   /** Takes the solution, or the way to it, of the latest change; after a return to stored light it is of no use. */
@@ -316,9 +325,9 @@ export class Viewer {
   }
 
   get scale(): Scale {
-    if (this.shown() === "difference") return "diverging";
+    if (["difference", "net-flux"].includes(this.shown())) return "diverging";
     if (this.uniforms.logarithmic.value) return "logarithmic";
-    return this.shown() === "row-sum" ? "fitted" : "rising";
+    return ["row-sum", "temperature"].includes(this.shown()) ? "fitted" : "rising";
   }
 
   get colourMap(): ColourMap { return this.scale === "diverging" ? redBlue : viridis; }

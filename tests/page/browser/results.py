@@ -32,6 +32,13 @@ def main():
             gathered = {name: light[name][()].ravel().tolist() for name in ("irradiance", "position")}
             json.dump({"gathered": gathered}, sys.stdout)
             return
+        if "heat" in file:
+            heat = file["heat"]
+            out = {name: heat[name][()].ravel().tolist() for name in ("temperature", "radiosity", "net_flux")}
+            out["area"] = file["form_factors/area"][()].tolist()
+            out["factors"] = dense_matrix(file["form_factors"]).tolist()
+            json.dump(out, sys.stdout)
+            return
         light = file["solution"]
         out = {name: light[name][()].ravel().tolist()
                for name in ("emission", "reflectance", "irradiance", "radiosity")}

@@ -43,10 +43,10 @@ function install(from, to) {
 }
 
 /** The page of a scene: data of the program under test, in the template of these sources. */
-function makePage(template, name, scene, options, looks = []) {
+function makePage(template, name, scene, options, looks = [], stage = "solve") {
   const results = join(pages, `${name}.h5`),
     made = join(pages, `${name}.made.html`);
-  run(program, ["solve", resolve(root, "data", scene), "-o", results, "--quiet", ...options]);
+  run(program, [stage, resolve(root, "data", scene), "-o", results, "--quiet", ...options]);
   run(program, ["view", results, "-o", made, "--quiet", ...looks]);
   const data = readFileSync(made, "utf8").match(/<script id="radiosity-data"[^]*?<\/script>/)[0];
   writeFileSync(
@@ -81,6 +81,8 @@ makePage(template, "small", "cornell-box.obj", ["--patches", "400", "--solver", 
 makePage(template, "sweeps", "cornell-box.obj", ["--patches", "400", "--solver", "gauss-seidel"]);
 makePage(template, "nodes", "furnished-room.obj", ["--method", "cut"], ["--elements", "off"]);
 makePage(template, "textured", join(here, "textured.obj"), ["--patches", "150", "--sky", "0.5,0.6,0.8"]);
+const oven = ["--patches", "200", "--thermal", join(root, "data/oven.csv"), "-o", join(pages, "heat.csv")];
+makePage(template, "heat", "cornell-box-closed.obj", oven, ["--elements", "off"], "heat");
 writeFileSync(join(pages, "empty.html"), template);
 
 const files = readdirSync(tests)
