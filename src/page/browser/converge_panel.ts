@@ -73,6 +73,25 @@ export class ConvergePanel {
     this.viewer.stepRun();
   }
 
+  /** Shows an iterate of a method, which runs as far as that. */
+  async to(method: Method, index: number): Promise<void> {
+    if (this.method !== method || this.frames.length === 0) {
+      select("method").value = method;
+      this.restart();
+    }
+    const { frames } = this;
+    while (frames.length <= index && !this.ended()) {
+      if (!this.waiting) {
+        this.waiting = true;
+        this.viewer.stepRun();
+      }
+      await new Promise((resume) => setTimeout(resume, 10));
+      if (frames !== this.frames) return; // another run began
+    }
+    this.wantsNext = false;
+    this.show(Math.min(index, frames.length - 1));
+  }
+
   private restart(playing = false): void {
     this.forget();
     this.playing = playing;

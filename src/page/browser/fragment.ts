@@ -2,7 +2,7 @@
 // lamps and materials, and the controls that are not as at first.
 import type { Rgb } from "./container";
 import type { RelightPanel } from "./relight_panel";
-import { input, on } from "./ui";
+import { choose, on, setTo, valueOf } from "./ui";
 import type { Viewer } from "./viewer";
 
 /** Ids, in the order in which they are set. */
@@ -12,16 +12,9 @@ const CONTROLS = [
 const CHOICES = ["surfaces", "move"];
 const QUIET_MS = 300; // browsers allow so many changes of the address a second
 
+const choices = (name: string) =>
+  [...document.querySelectorAll<HTMLInputElement>(`input[name="${name}"]`)].map((radio) => radio.value);
 const chosen = (name: string) => document.querySelector<HTMLInputElement>(`input[name="${name}"]:checked`)!.value;
-const valueOf = (id: string) => (input(id).type === "checkbox" ? String(Number(input(id).checked)) : input(id).value);
-
-function setTo(id: string, value: string): void {
-  const control = input(id);
-  if (valueOf(id) === value) return;
-  if (control.type === "checkbox") control.checked = value === "1";
-  else control.value = value;
-  for (const event of ["input", "change"]) control.dispatchEvent(new Event(event, { bubbles: true }));
-}
 
 const readable = (text: string) => encodeURIComponent(text).replaceAll("%2C", ",").replaceAll("%3A", ":");
 const point = (text: string | undefined): Rgb | null => {
@@ -39,12 +32,12 @@ export class Fragment {
               private readonly onUnknown: (names: string[]) => void) {
     this.first = this.controls();
     this.firstView = JSON.stringify(viewer.control.words());
-    this.restore();
+    this.restore(location.href);
     for (const event of ["light", "view", "picks"]) viewer.listen(event, () => this.changed());
     viewer.control.listen(() => this.changed());
     on("app", "change", () => this.changed());
     on("app", "input", () => this.changed());
-    window.addEventListener("hashchange", () => this.restore());
+    window.addEventListener("hashchange", () => this.restore(location.href));
   }
 
   /** The address of the page as it is now. */
@@ -66,8 +59,9 @@ export class Fragment {
     this.waiting = window.setTimeout(() => history.replaceState(null, "", this.link()), QUIET_MS);
   }
 
-  private restore(): void {
-    const state = new Map(new URLSearchParams(location.hash.slice(1)));
+  /** Makes the page show what an address says. */
+  restore(link: string): void {
+    const state = new Map(new URLSearchParams(new URL(link).hash.slice(1)));
     const take = (name: string) => {
       const value = state.get(name);
       state.delete(name);
@@ -78,10 +72,8 @@ export class Fragment {
     else this.viewer.resetView();
     this.relight.restore(state);
     for (const name of CHOICES) {
-      const value = take(name) ?? this.first[name]!;
-      for (const radio of document.querySelectorAll<HTMLInputElement>(`input[name="${name}"]`)) {
-        if (radio.value === value) radio.click();
-      }
+      const value = take(name) ?? "";
+      choose(name, choices(name).includes(value) ? value : this.first[name]!);
     }
     for (const id of CONTROLS) setTo(id, take(id) ?? this.first[id]!);
     this.onUnknown([...state.keys()]);

@@ -2,10 +2,11 @@
 import type { ConvergePanel } from "./converge_panel";
 import type { GatherPanel } from "./gather_panel";
 import { clearPicks, pickAt } from "./patch_panel";
+import type { Tour } from "./tour";
 import { choose, element, input, isShortcut, keysAreFree, unfold } from "./ui";
 import type { Viewer } from "./viewer";
 
-export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: GatherPanel): void {
+export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: GatherPanel, tour: Tour): void {
   const canvas = element<HTMLCanvasElement>("picture");
   const expose = (by: number) => {
     input("exposure").value = String(Number(input("exposure").value) + by);
@@ -22,6 +23,7 @@ export function setUpKeys(viewer: Viewer, converge: ConvergePanel, gather: Gathe
     "v": () => choose("move", viewer.control.walking ? "orbit" : "walk"),
     "r": () => viewer.resetView(),
     "f": () => viewer.focusPick(),
+    "t": () => tour.toggle(),
     "i": () => element<HTMLDetailsElement>("patch-panel").toggleAttribute("open"),
     " ": () => {
       unfold("converge-panel");

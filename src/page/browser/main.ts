@@ -11,6 +11,7 @@ import { inspecting, pickAt, setUpPatch } from "./patch_panel";
 import { RelightPanel } from "./relight_panel";
 import { setUpShare } from "./share_panel";
 import { SETTLED_MS } from "./stage";
+import { Tour } from "./tour";
 import { copy, counted, element, make, on, onChoice, short } from "./ui";
 import { Viewer } from "./viewer";
 
@@ -90,7 +91,6 @@ function setUpPanels(viewer: Viewer): void {
   const relight = new RelightPanel(viewer, () => converge.forget());
   setUpCamera(viewer);
   const gather = new GatherPanel(viewer, () => converge.forget());
-  setUpKeys(viewer, converge, gather);
   viewer.control.onTap = (x, y, second) => { if (inspecting()) pickAt(viewer, x, y, second); };
   on("open-help", "click", () => element<HTMLDialogElement>("help").showModal());
   on("to-stored", "click", () => {
@@ -106,7 +106,8 @@ function setUpPanels(viewer: Viewer): void {
   if (window.matchMedia(NARROW).matches) {
     for (const panel of document.querySelectorAll("details")) panel.open = false;
   }
-  setUpShare(viewer, relight); // the last, since it restores what an address says
+  const fragment = setUpShare(viewer, relight); // after all others, since it restores what an address says
+  setUpKeys(viewer, converge, gather, new Tour(viewer, converge, fragment));
 }
 
 async function begin(): Promise<void> {

@@ -101,7 +101,7 @@ function save(viewer: Viewer, scale: number, name: string): void {
   });
 }
 
-export function setUpShare(viewer: Viewer, relight: RelightPanel): void {
+export function setUpShare(viewer: Viewer, relight: RelightPanel): Fragment {
   const { title } = viewer.data.header;
   const fragment = new Fragment(viewer, relight, (unknown) => {
     element("link-note").hidden = unknown.length === 0;
@@ -126,4 +126,5 @@ export function setUpShare(viewer: Viewer, relight: RelightPanel): void {
   element("full-screen").hidden = !document.fullscreenEnabled;
   on("full-screen", "click", () => void element("app").requestFullscreen());
   on("copy-command", "click", () => void copy(element("command").textContent ?? "", element("copy-command")));
+  return fragment;
 }

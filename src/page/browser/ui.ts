@@ -69,6 +69,20 @@ export function choose(name: string, value: string): void {
   document.querySelector<HTMLInputElement>(`input[name="${name}"][value="${value}"]`)?.click();
 }
 
+/** The value of an input or select as a text; 1 and 0 of a check box. */
+export function valueOf(id: string): string {
+  return input(id).type === "checkbox" ? String(Number(input(id).checked)) : input(id).value;
+}
+
+/** Gives a control that value, as if a person had. */
+export function setTo(id: string, value: string): void {
+  const control = input(id);
+  if (valueOf(id) === value) return;
+  if (control.type === "checkbox") control.checked = value === "1";
+  else control.value = value;
+  for (const event of ["input", "change"]) control.dispatchEvent(new Event(event, { bubbles: true }));
+}
+
 export async function copy(text: string, button: HTMLElement): Promise<void> {
   const label = button.textContent;
   try {
