@@ -6,8 +6,7 @@ const ROUNDING = 1e-9; // of the largest value: less is rounding, and shown as 0
 
 export function setUpHeat(viewer: Viewer): void {
   const { heat } = viewer.data.header;
-  element("heat-panel").hidden = !heat;
-  if (!heat) return;
+  if (!heat) return element("heat-panel").remove();
   element("heat-facts").textContent = heat.message;
   const columns = [
     heat.surfaces.map((surface) => surface.temperature ?? NaN), heat.surfaces.map((surface) => surface.net_flux),

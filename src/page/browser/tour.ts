@@ -11,7 +11,9 @@ type Step = keyof typeof TOUR;
 const STEPS = Object.keys(TOUR) as Step[];
 const OFF_PATCH = 1e-3; // of the scene's diagonal: where an eye on a patch is
 
-/** Of the patches that a grid over the picture meets, the one that sees most. */
+const SEES_MUCH = 0.8; // of what the one sees that sees most
+
+/** Of the patches that a grid over the picture meets, from the middle on, the first that sees much of the scene. */
 function patchInView(viewer: Viewer): number {
   const { clientWidth: width, clientHeight: height } = viewer.stage.canvas;
   const { rowSum, node } = viewer.data;
@@ -19,7 +21,8 @@ function patchInView(viewer: Viewer): number {
   const found = places.flatMap((y) => places.map((x) => viewer.patchAt(x * width, y * height)));
   const patches = found.filter((patch) => patch !== null);
   const seen = (patch: number) => Math.min(1, rowSum[node[patch]!]!);
-  return patches.reduce((best, patch) => (seen(patch) > seen(best) ? patch : best), patches[0] ?? 0);
+  const most = Math.max(...patches.map(seen));
+  return patches.find((patch) => seen(patch) >= SEES_MUCH * most) ?? 0;
 }
 
 export class Tour {

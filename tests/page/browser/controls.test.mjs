@@ -223,6 +223,49 @@ test("fingers: a long press picks the second patch, two zoom", async () => {
   await page.close();
 });
 
+test("390 pixels: every target of a finger is 44 pixels high and wide", async () => {
+  const { page, said } = await open(browser, "small.html", { viewport: { width: 390, height: 844 }, hasTouch: true });
+  await unfoldAll(page);
+  await page.locator("#show").selectOption("radiosity");
+  await page.locator("#before-after").check();
+  const small = await page.locator("button, select, input, summary, .check, .choice span").evaluateAll((all) =>
+    all.filter((e) => e.checkVisibility() && !(e.type === "checkbox" || e.type === "radio")) // their labels are targets
+      .map((e) => [e.id || e.className || e.textContent, e.getBoundingClientRect()])
+      .filter(([, { width, height }]) => width < 44 || height < 44)
+      .map(([name, { width, height }]) => `${name}: ${width} x ${height}`));
+  assert.deepEqual(small, []);
+  assert.ok(await page.evaluate(() => document.getElementById("panels").scrollWidth <= 390));
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("two fingers walk: ahead, and no farther than the wall", async () => {
+  const { page, said } = await open(browser, "small.html", { viewport: { width: 390, height: 844 }, hasTouch: true });
+  const box = await page.locator("#picture").boundingBox();
+  const fingers = await page.context().newCDPSession(page);
+  const touch = (type, ...points) =>
+    fingers.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: points.map(([x, y], id) => ({ x: box.x + box.width * x, y: box.y + box.height * y, id })),
+    });
+  const eye = async () => (await text(page, "camera-text")).match(/eye=([^;]+)/)[1].split(",").map(Number);
+  const pinch = async () => {
+    await touch("touchStart", [0.47, 0.5], [0.53, 0.5]);
+    for (let k = 1; k <= 6; ++k) await touch("touchMove", [0.47 - 0.06 * k, 0.5], [0.53 + 0.06 * k, 0.5]);
+    await touch("touchEnd");
+    return (await eye())[2]; // the box is open at its low z
+  };
+  await page.evaluate(() => document.querySelector('input[name="move"][value="walk"]').click());
+  const places = [(await eye())[2]];
+  for (let k = 0; k < 12; ++k) places.push(await pinch());
+  assert.ok(places[1] > places[0] + 0.05, `ahead: ${places}`);
+  assert.ok(places.every((z, k) => k === 0 || z >= places[k - 1] - 1e-6), `never back: ${places}`);
+  assert.ok(Math.abs(places.at(-1) - places.at(-2)) < 1e-3, `it ends at a wall: ${places}`);
+  assert.ok(places.at(-1) < 0.56, `within the box: ${places}`);
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
 test("390 pixels: panels fold, nothing is wider than the screen, a touch picks", async () => {
   for (const colorScheme of ["light", "dark"]) {
     const { page: narrow, said: words } = await open(browser, "cornell.html", {
