@@ -154,6 +154,8 @@ CLI::App* addCommand(CLI::App& app, Request& r, Command command) {
   }
   if (command == Command::view) {
     addExposureOption(*sub, r, "The page first shows");
+    add(*sub, "Page", "--gallery", r.gallery, "DIR",
+        "Write the page into this folder, with a thumbnail, and an index.html of all pages there");
   }
   return sub;
 }

@@ -63,6 +63,7 @@ struct Request {
 
   std::string camera;
   std::string exposure = "auto";
+  std::string gallery;  ///< the folder of `view`; empty: none
   std::optional<bool> elements;
   std::string lightmap;  ///< the .exr; empty: none
   bool final_gather = false;

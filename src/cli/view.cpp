@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "cli/commands.h"
 #include "cli/desktop.h"
 #include "cli/element_use.h"
+#include "cli/gallery.h"
 #include "cli/picture.h"
 #include "cli/stored_conditions.h"
 #include "cli/summaries.h"
@@ -25,12 +24,6 @@ void requirePages() {
   throw InputError(
       "view: this program was built without node and npm, which make pages; install both "
       "(tools/setup does), then configure and build again");
-}
-
-bool isPage(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  return text.find("id=\"radiosity-data\"") != std::string::npos;
 }
 
 /// The default page, in the current folder. Nobody named it, so it may only replace another page.
@@ -74,8 +67,9 @@ void summarizePage(Report& report, const Picture& picture, double ev, const Page
 /// else the arguments without those of the run and of the picture, which a page changes.
 std::string sceneArguments(const Request& request, const OutputSet& files) {
   if (files.has(Format::results)) return shellWord(files.path(Format::results));
-  constexpr const char* kOwn[] = {"-o",       "--output", "--report", "--time-limit", "--threads",
-                                  "--camera", "--width",  "--height", "--exposure",   "--elements"};
+  constexpr const char* kOwn[] = {"-o",        "--output",   "--report",  "--time-limit",
+                                  "--threads", "--camera",   "--gallery", "--width",
+                                  "--height",  "--exposure", "--elements"};
   std::string text;
   for (std::size_t k = 2; k < request.arguments.size(); ++k) {
     const std::string& word = request.arguments[k];
@@ -100,6 +94,19 @@ bool hasHeat(Session& session, Pipeline& pipeline) {
   return true;
 }
 
+/// Draws the page's first picture small.
+void drawThumbnail(Session& session, Pipeline& pipeline, const SurfaceLight& light,
+                   const ExposedPicture& shown, OutputSet& files) {
+  RenderOptions small = shown.picture.options;
+  small.width = 480;
+  small.height = 360;
+  const Image radiance =
+      renderRadiance(pipeline.mesh().mesh, light, shown.picture.camera, small, session.progress);
+  files.write(Format::png, "thumbnail", [&](const std::string& temporary) {
+    writeImage(temporary, exposed(radiance, shown.ev), false, {});
+  });
+}
+
 void writePages(Session& session, Pipeline& pipeline, bool elements, bool heat, OutputSet& files) {
   const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
   const ExposedPicture shown = exposePicture(session, pipeline, light);
@@ -113,6 +120,7 @@ void writePages(Session& session, Pipeline& pipeline, bool elements, bool heat, 
   files.write(Format::page, "page, opens in a browser", [&](const std::string& temporary) {
     page = writePage(temporary, pipeline, light, options, session.progress);
   });
+  if (!session.request.gallery.empty()) drawThumbnail(session, pipeline, light, shown, files);
   summarizePage(session.report, shown.picture, shown.ev, page);
   for (const Light& sky : unevenSkies(pipeline.scene().lights)) {
     const Note note{
@@ -131,7 +139,14 @@ int runView(Session& session) {
   requirePages();
   OutputSet files = claimOutputs(session);
   const bool is_named = files.has(Format::page);
-  if (!is_named) files.add({defaultPage(request.input), Format::page});
+  if (!request.gallery.empty()) {
+    const GalleryFiles in_gallery =
+        galleryFiles(request.gallery, fs::path(request.input).stem().string());
+    files.add({in_gallery.page, Format::page});
+    files.add({in_gallery.thumbnail, Format::png});
+  } else if (!is_named) {
+    files.add({defaultPage(request.input), Format::page});
+  }
   const ElementUse elements = elementUse(request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
@@ -156,7 +171,11 @@ int runView(Session& session) {
   writeStages(session, pipeline, files);
   files.commit(session.report, session.progress);
   noteUnsaved(session, pipeline, files);
-  if (!is_named && openInDesktop(files.path(Format::page))) {
+  if (!request.gallery.empty()) {
+    const std::size_t pages = writeGalleryIndex(request.gallery);
+    session.report.line("gallery",
+                        fmt::format("{} with {}", request.gallery, plural(pages, "page", "pages")));
+  } else if (!is_named && openInDesktop(files.path(Format::page))) {
     session.report.line("page", "opens in the browser");
   }
   return code;

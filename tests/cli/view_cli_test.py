@@ -162,6 +162,22 @@ class Pages(CliTest):
                 np.testing.assert_allclose(page["heat_" + name], heat[name][()].sum(1), rtol=1e-6)
         self.assertEqual([s["name"] for s in page.header["heat"]["surfaces"]], ["floor", "plate"])
 
+    def test_a_gallery_has_an_index_of_its_pages_with_thumbnails(self):
+        (self.folder / "a & b.obj").write_text((self.folder / "box.obj").read_text())
+        for scene in ("box.obj", "a & b.obj"):
+            self.run_program("view", scene, *BOX, "--elements", "off", "--gallery", "all")
+        gallery = self.folder / "all"
+        self.assertEqual(sorted(p.name for p in gallery.iterdir()),
+                         ["a & b.html", "a & b.png", "box.html", "box.png", "index.html"])
+        index = (gallery / "index.html").read_text()
+        self.assertEqual(re.findall('href="([^"]*)"', index), ["a%20%26%20b.html", "box.html"])
+        self.assertEqual(re.findall('src="([^"]*)"', index), ["a%20%26%20b.png", "box.png"])
+        self.assertIn("<span>a &amp; b</span>", index)
+        self.assertEqual((gallery / "box.png").read_bytes()[16:24], b"\0\0\1\xe0\0\0\1\x68")  # 480 x 360
+        self.assertEqual(self.page("all/box.html").header["arguments"], "box.obj --patches 60")
+        (gallery / "index.html").write_text("<p>mine</p>")
+        self.refuse("view", "box.obj", *BOX, "--gallery", "all", words=["index.html", "--gallery"])
+
     def test_one_band_is_grey(self):
         self.run_program("solve", "box.obj", *BOX, "-o", "s.h5")
         with h5py.File(self.folder / "s.h5", "r+") as file:
