@@ -34,6 +34,7 @@ function weigh(data: PageData, t: number, vertex: number, weights: Float64Array)
 export class FineLight {
   private readonly corner: Uint32Array; // Q*3: shading vertices, ...
   private readonly weight: Float32Array; // ... and their weights
+  private prepared = false; // they are known
   private readonly rest: Float32Array; // Q*3: what is not in shares
   private readonly then: Float32Array; // of shading vertices: likewise, of patches
   private readonly little: Rgb;
@@ -51,7 +52,12 @@ export class FineLight {
     this.little = [0, 1, 2].map((b) => DARK * meanOf(this.then, b)) as Rgb;
     this.corner = new Uint32Array(elementPatch.length * 3);
     this.weight = new Float32Array(elementPatch.length * 3);
-    this.findCorners();
+  }
+
+  /** Does what of() needs once. */
+  prepare(): void {
+    if (!this.prepared) this.findCorners();
+    this.prepared = true;
   }
 
   /** The radiosity of element vertices in the stored light, Q*3. */
@@ -59,6 +65,7 @@ export class FineLight {
 
   /** The same for a solution of patches and its lamps. */
   of(light: PatchLight, factors: Factors): Float32Array {
+    this.prepare();
     const { data, corner, weight, then, rest } = this;
     const now = shadingValues(data, this.others(light.irradiance, factors), BANDS);
     const result = new Float32Array(rest.length);

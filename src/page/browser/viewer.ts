@@ -120,7 +120,10 @@ export class Viewer {
     });
     this.agreement = loaded.agreement;
     if (loaded.reference) this.reference = this.storedLight(loaded.reference);
-    whenIdle(() => this.solver.warm());
+    whenIdle(() => {
+      this.solver.warm();
+      this.fine.prepare();
+    });
     this.solver.onRelit = (light) => {
       this.takeSolution(light);
       this.relitListener(light);
