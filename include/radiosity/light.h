@@ -192,7 +192,7 @@ struct PhotometricLight {
   double usual() const { return file.flux() / kLumensPerWatt; }
   std::vector<std::string> remarks() const;
   void settle(Up scene_up) {
-    if (!up) up = scene_up == Up::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    if (!up) up = upVector(scene_up);
   }
   /// Throws InputError unless it has a file, and an axis.
   void validate() const;

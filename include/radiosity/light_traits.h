@@ -15,6 +15,9 @@ namespace [[gnu::visibility("default")]] radiosity {
 /// The axis that points up.
 enum class Up { y, z };
 
+/// The same as a direction.
+inline Vec3 upVector(Up up) { return up == Up::y ? Vec3(0, 1, 0) : Vec3(0, 0, 1); }
+
 /// Lumens a watt: of light whose Y is that of the bands, linear Rec. 709 (CIE 1931, photopic).
 inline constexpr double kLumensPerWatt = 683;
 

@@ -200,7 +200,8 @@ int writeLightmapGlb(const std::string& path, const Scene& scene, const Lightmap
 
 /// .exr: 32-bit floats, linear, colours multiplied by alpha as the format asks (a pixel is then
 /// what reaches it; a miss is 0,0,0,0). .png: 8 bits, colours not multiplied; linear images get the
-/// sRGB curve, display-referred ones are stored as they are. `metadata`: name, value pairs.
+/// sRGB curve, display-referred ones are stored as they are. .hdr: Radiance's RGBE, linear, colours
+/// multiplied by alpha, which it does not have. `metadata`: name, value pairs.
 /// `layers`: of .exr alone; their values are stored as they are, their units as attributes
 /// ("depth.unit").
 void writeImage(const std::string& path, const Image& image, bool display_referred,

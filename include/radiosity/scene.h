@@ -76,9 +76,10 @@ struct Scene {
   std::vector<Vec3> colours;              ///< one per corner, or empty: a factor of the material's
                                           ///< reflectance, 0 to 1, linear between corners
   std::vector<Index> face_surface;        ///< F
-  std::vector<std::size_t> face_element;  ///< F: line in an OBJ, ASCII STL or View3D file; number
-                                          ///< of the element in a .msh or .inp; else of the face
-                                          ///< or cell in the primitive (glTF) or in the file
+  std::vector<std::size_t> face_element;  ///< F: line in an OBJ, ASCII STL, View3D or Radiance
+                                          ///< file; number of the element in a .msh or .inp; else
+                                          ///< of the face or cell in the primitive (glTF) or in the
+                                          ///< file
   std::vector<Surface> surfaces;
   std::vector<Material> materials;
   std::vector<Texture> textures;
@@ -162,7 +163,7 @@ struct SceneOverrides {
     list({.name = "up",
           .value = "y|z",
           .help = "Axis that points up, for cameras that nobody gave: y or z (default: z in .stl, "
-                  ".3mf, .msh, .inp, .vs3 and VTK's files, else y)"},
+                  ".3mf, .rad, .msh, .inp, .vs3 and VTK's files, else y)"},
          o.up);
   }
 };
@@ -177,6 +178,9 @@ struct SceneOptions : SceneOverrides {
   VertexColours vertex_colours = VertexColours::unused;
   bool textures = true;    ///< false: the material's factor alone
   double max_image = 100;  ///< largest texture, in millions of pixels; above 0
+  /// Of the spheres, cylinders, cones and rings of a .rad: how far the facets that stand for one may
+  /// lie off it, over its radius.
+  double curve_tolerance = 0.005;
   /// Throws InputError naming the option and its range.
   void validate() const;
 
@@ -217,6 +221,12 @@ struct SceneOptions : SceneOverrides {
                   "takes up to 30 MB while it is read)",
           .in_key = InKey::never},
          o.max_image, {.to = 2000, .above = 0});
+    list({.name = "curve_tolerance",
+          .value = "SHARE",
+          .help = "How far facets may lie off the spheres, cylinders, cones and rings of a .rad, "
+                  "over their radius",
+          .in_key = InKey::if_changed},
+         o.curve_tolerance, {.from = 1e-5, .to = 0.2});
   }
 };
 
@@ -224,11 +234,11 @@ struct SceneOptions : SceneOverrides {
 std::string sceneExtensions();
 
 /// Reads a scene, its format told by the extension, and applies the overrides: .obj (+ .mtl),
-/// .gltf, .glb, .stl, .3mf; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of CalculiX and
-/// Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .ifc, .dxf, as files of
-/// CAD and modellers. Named groups (solids, physical groups, element sets, arrays of
+/// .gltf, .glb, .stl, .3mf; Radiance's .rad; View3D's .vs3, .v3d; Gmsh's .msh (2.2, 4.1); .inp of
+/// CalculiX and Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .ifc, .dxf,
+/// as files of CAD and modellers. Named groups (solids, physical groups, element sets, arrays of
 /// cells) are surfaces. Face f of the scene is face f of the file, but one may become several
-/// (View3D's with subsurfaces, triangles of a strip). Lines and points are left out, and volumes if
+/// (View3D's with subsurfaces, triangles of a strip, curved ones of a .rad). Lines and points are left out, and volumes if
 /// there are faces; without faces the skin of the volumes is the scene. An OBJ has no cameras of
 /// its own; a comment line `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units,
 /// vertical field of view) is read as one. Errors: InputError, one line with file, element and

@@ -21,7 +21,7 @@ struct DecodedImage {
   bool floating = false;    ///< stored as floating-point numbers
   bool linear = false;      ///< the file says that its numbers are linear
   bool multiplied = false;  ///< the colours are multiplied by alpha
-  std::string quantity;     ///< the attribute of that name; empty if there is none
+  std::string quantity;     ///< the attribute of that name; "radiance" of .hdr; empty: none
   std::vector<float> samples;
   bool opened = false;    ///< false: no file of a known format
   std::string problem;    ///< why there are no samples, in OpenImageIO's words; else empty

@@ -73,9 +73,9 @@ const char* examplesOf(Command command) {
              "  radiosity solve cornell.h5 --mix lamp/light=0.5 -o dim.glb\n"
              "  radiosity solve plates.mtx --areas areas.txt --rows rows.csv -o light.csv";
     case Command::gather:
-      return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear),\n"
-             ".glb (lit mesh). A results file given as input is updated in place where no -o is "
-             "given;\n"
+      return "Files (-o): .h5 (results), .png (exposed, sRGB), .exr and .hdr (radiance, W/m^2/sr,\n"
+             "linear), .glb (lit mesh). A results file given as input is updated in place where no "
+             "-o is given;\n"
              "its mesh is reused, and so is the light gathered in it before. Reaching the limit "
              "of\n"
              "--passes is no failure.\n\n"
@@ -123,9 +123,10 @@ const char* examplesOf(Command command) {
              "  radiosity compare new.exr old.exr --tolerance 1e-3 -o difference.png\n"
              "  radiosity compare cornell.h5 cornell.vf --tolerance 1e-4";
     case Command::render:
-      return "Files (-o): .png (exposed, sRGB), .exr (radiance, W/m^2/sr, linear), .glb (lit "
-             "mesh),\n"
-             ".h5 (results), .mtx (MatrixMarket). With --show an .exr holds the quantity "
+      return "Files (-o): .png (exposed, sRGB), .exr and Radiance's .hdr (radiance, W/m^2/sr, "
+             "linear),\n"
+             ".glb (lit mesh), .h5 (results), .mtx (MatrixMarket). With --show an .exr holds the "
+             "quantity\n"
              "itself.\n\n"
              "Examples:\n"
              "  radiosity render data/cornell-box.obj -o cornell.png\n"

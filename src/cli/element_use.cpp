@@ -2,22 +2,20 @@
 
 #include <fmt/format.h>
 
+#include "cli/picture.h"
 #include "cli/show.h"
 
 namespace radiosity::cli {
 
 namespace {
 
-bool drawsLight(const OutputSet& files) {
-  return files.has(Format::glb) || files.has(Format::png) || files.has(Format::exr) ||
-         files.has(Format::page);
-}
-
 /// Whether an output can be seen from anywhere and needs all elements; a picture only needs those
 /// that it shows.
 bool showsAllLight(const OutputSet& files) {
   return files.has(Format::glb) || files.has(Format::page);
 }
+
+bool drawsLight(const OutputSet& files) { return hasPicture(files) || showsAllLight(files); }
 
 /// The reason why no output has elements, and the cure.
 std::string whyNone(const Request& request, const OutputSet& files) {

@@ -32,7 +32,7 @@ int runGather(Session& session) {
   Picture picture = choosePicture(session.request, pipeline.scene());
   const GatherSummary& summary = pipeline.gathered().summary;
   const int code = judgeGathered(session, pipeline, summary);
-  if (files.has(Format::png) || files.has(Format::exr) || files.has(Format::glb)) {
+  if (hasPicture(files) || files.has(Format::glb)) {
     const PatchMesh& mesh = pipeline.mesh().mesh;
     const SurfaceLight light = pipeline.gatheredLight();
     framePicture(picture, mesh, summary.closed, light.reflected);

@@ -58,7 +58,8 @@ void checkMix(const Request& request, const OutputSet& files) {
   if (parseShow(request.show).quantity) {
     throw InputError("--mix: --show draws what patches of the file have; leave one of the two out");
   }
-  const Format shown[] = {Format::glb, Format::light_csv, Format::vtp, Format::png, Format::exr};
+  const Format shown[] = {Format::glb, Format::light_csv, Format::vtp,
+                          Format::png, Format::exr,       Format::hdr};
   for (const Format format : shown) {
     if (files.has(format)) return;
   }

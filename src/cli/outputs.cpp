@@ -31,6 +31,7 @@ const std::vector<Extension>& extensions() {
   static const std::vector<Extension> kAll = {
       {".png", Format::png, {gather, compare, render, illuminance}},
       {".exr", Format::exr, {gather, render}},
+      {".hdr", Format::hdr, {gather, render}},
       {".glb", Format::glb, {mesh, solve, gather, render}},
       {".obj", Format::obj, {mesh}},
       {".vtp", Format::vtp, {mesh, factors, solve, heat}},

@@ -18,6 +18,7 @@ enum class Format {
   matrix_market,
   png,
   exr,
+  hdr,
   glb,
   obj,
   vtp,

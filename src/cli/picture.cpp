@@ -72,7 +72,7 @@ void framePicture(Picture& picture, const PatchMesh& mesh, bool closed,
 void requireColours(const Pipeline& pipeline, const Request& request, const OutputSet& files) {
   const int bands = pipeline.bands();
   if (bands == 1 || bands == 3) return;
-  for (const Format format : {Format::png, Format::exr, Format::glb, Format::page}) {
+  for (const Format format : {Format::png, Format::exr, Format::hdr, Format::glb, Format::page}) {
     if (!files.has(format)) continue;
     throw InputError(fmt::format(
         "{}: draws three bands (red, green, blue), or one in grey, and {} has {}; keep the numbers "
@@ -134,6 +134,17 @@ void writeLitMesh(Report& report, const PatchMesh& mesh, const SurfaceLight& lig
 
 namespace {
 
+/// The camera as Radiance's pictures have it: full angles across and up, degrees.
+std::string radianceView(const Picture& picture) {
+  const Camera& c = picture.camera;
+  const Vec3 ahead = glm::normalize(c.target - c.eye);
+  const double ratio = double(picture.options.width) / double(picture.options.height);
+  const double across = 2 * std::atan(std::tan(c.vertical_fov / 2) * ratio);
+  return fmt::format("-vtv -vp {} {} {} -vd {} {} {} -vu {} {} {} -vh {} -vv {}", c.eye.x, c.eye.y,
+                     c.eye.z, ahead.x, ahead.y, ahead.z, c.up.x, c.up.y, c.up.z, degrees(across),
+                     degrees(c.vertical_fov));
+}
+
 /// Warns if the picture only shows dark parts, which automatic exposure would hide.
 void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& light,
                     const Image& radiance) {
@@ -152,6 +163,10 @@ void warnOfDarkness(Report& report, const PatchMesh& mesh, const SurfaceLight& l
 
 }  // namespace
 
+bool hasPicture(const OutputSet& files) {
+  return files.has(Format::png) || files.has(Format::exr) || files.has(Format::hdr);
+}
+
 double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                   const Image& radiance, const Picture& picture, OutputSet& files,
                   std::span<const ImageLayer> layers) {
@@ -169,6 +184,11 @@ double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& l
   for (const ImageLayer& layer : layers) names += (names.empty() ? "; layers " : ", ") + layer.name;
   files.write(Format::exr, "radiance, W/m^2/sr, linear" + names, [&](const std::string& temporary) {
     writeImage(temporary, radiance, false, metadataOf(picture, "radiance", "W/m^2/sr"), layers);
+  });
+  files.write(Format::hdr, "radiance, W/m^2/sr, RGBE", [&](const std::string& temporary) {
+    Metadata metadata = metadataOf(picture, "radiance", "W/m^2/sr");
+    metadata.emplace_back("VIEW", radianceView(picture));
+    writeImage(temporary, radiance, false, metadata);
   });
   if (files.has(Format::glb) && session.request.lightmap.empty()) {
     writeLitMesh(session.report, mesh, light, files, ev, picture.options.crease);

@@ -37,8 +37,11 @@ void reportPicture(Report& report, const Picture& picture);
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 Metadata metadataOf(const Picture& picture, const std::string& quantity, const std::string& unit);
 
-/// Writes a picture's radiance to the .png and .exr among `files`, and the light of elements, or
-/// else of patches, to the .glb (without --lightmap). Reports the exposure and returns it.
+/// Whether a picture is asked for: .png, .exr or .hdr.
+bool hasPicture(const OutputSet& files);
+
+/// Writes a picture's radiance to the .png, .exr and .hdr among `files`, and the light of elements,
+/// or else of patches, to the .glb (without --lightmap). Reports the exposure and returns it.
 /// `layers`: of the .exr.
 double writeLight(Session& session, const PatchMesh& mesh, const SurfaceLight& light,
                   const Image& radiance, const Picture& picture, OutputSet& files,

@@ -96,8 +96,12 @@ void checkFinalGather(const Request& request, const Show& show, const OutputSet&
 /// Refuses impossible outputs before the work is done.
 void checkOutputs(const OutputSet& files, const Show& show) {
   const bool lit = files.has(Format::glb);
-  if (!lit && !files.has(Format::png) && !files.has(Format::exr)) {
-    throw InputError("render: name the picture with -o, e.g. -o picture.png (or .exr, .glb)");
+  if (!lit && !hasPicture(files)) {
+    throw InputError("render: name the picture with -o, e.g. -o picture.png (or .exr, .hdr, .glb)");
+  }
+  if (files.has(Format::hdr) && (show.quantity || show.light)) {
+    throw InputError(files.path(Format::hdr) +
+                     ": holds the picture's radiance; use .png or .exr with --show");
   }
   if (lit && (show.quantity || show.light)) {
     throw InputError(files.path(Format::glb) +

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "radiosity/illuminance.h"
-#include "scene/up_vector.h"
 
 namespace radiosity {
 

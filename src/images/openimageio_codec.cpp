@@ -53,6 +53,8 @@ DecodedImage samplesOf(OIIO::ImageInput& input, const ImageLimit& most) {
   image.linear = OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
   image.multiplied = spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
   image.quantity = spec.get_string_attribute("quantity");
+  // Radiance's own format has nothing else.
+  if (std::string_view(input.format_name()) == "hdr") image.quantity = "radiance";
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.depth > 1) {
     image.problem = "it holds no picture";
     return image;

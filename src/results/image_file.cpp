@@ -12,6 +12,7 @@
 #include "base/srgb.h"
 #include "radiosity/results.h"
 #include "results/checked_file.h"
+#include "results/rgbe.h"
 
 namespace radiosity {
 
@@ -146,17 +147,19 @@ void writeImage(const std::string& path, const Image& image, bool display_referr
     file.colour_space = display_referred ? "sRGB" : "Linear";
     file.pixels = pixels.data();
     save(path, file);
+  } else if (!layers.empty() && (extension == ".png" || extension == ".hdr")) {
+    throw InputError(path + ": layers are values of .exr; name a file .exr");
+  } else if (extension == ".hdr") {
+    if (display_referred) throw InputError(path + ": .hdr is for light; name a file .png");
+    writeRgbe(path, image, metadata);
   } else if (extension == ".png") {
-    if (!layers.empty()) {
-      throw InputError(path + ": layers are values of .exr; name a file .exr");
-    }
     const std::vector<std::uint8_t> pixels = encoded(image, display_referred);
     file.colour_space = "sRGB";
     file.pixels = pixels.data();
     save(path, file);
   } else {
-    throw InputError(
-        fmt::format("{}: '{}' is no picture format; name a file .png or .exr", path, extension));
+    throw InputError(fmt::format("{}: '{}' is no picture format; name a file .png, .exr or .hdr",
+                                 path, extension));
   }
 }
 

@@ -30,15 +30,15 @@ struct Format {
 
 constexpr std::array kFormats = {
     Format{".obj", loadObj},           Format{".gltf", loadGltf},
-    Format{".glb", loadGltf},          Format{".stl", loadStl, Up::z},
-    Format{".vs3", loadView3d, Up::z}, Format{".v3d", loadView3d, Up::z},
-    Format{".msh", loadGmsh, Up::z},   Format{".inp", loadInp, Up::z},
-    Format{".ply", loadPly},           Format{".vtk", loadVtk, Up::z},
-    Format{".vtp", loadVtkXml, Up::z}, Format{".vtu", loadVtkXml, Up::z},
-    Format{".dae", loadAssimp},        Format{".fbx", loadAssimp},
-    Format{".3ds", loadAssimp},        Format{".ifc", loadAssimp},
-    Format{".dxf", loadAssimp, Up::z}, Format{".off", loadOff},
-    Format{".3mf", load3mf, Up::z},
+    Format{".glb", loadGltf},          Format{".rad", loadRadiance, Up::z},
+    Format{".stl", loadStl, Up::z},    Format{".vs3", loadView3d, Up::z},
+    Format{".v3d", loadView3d, Up::z}, Format{".msh", loadGmsh, Up::z},
+    Format{".inp", loadInp, Up::z},    Format{".ply", loadPly},
+    Format{".vtk", loadVtk, Up::z},    Format{".vtp", loadVtkXml, Up::z},
+    Format{".vtu", loadVtkXml, Up::z}, Format{".dae", loadAssimp},
+    Format{".fbx", loadAssimp},        Format{".3ds", loadAssimp},
+    Format{".ifc", loadAssimp},        Format{".dxf", loadAssimp, Up::z},
+    Format{".off", loadOff},           Format{".3mf", load3mf, Up::z},
 };
 
 /// Formats that a converter reads.

@@ -13,6 +13,9 @@ Scene loadObj(const std::string& path, const SceneOptions& options);
 /// glTF 2.0, .gltf or .glb; metres, overrides not yet applied.
 Scene loadGltf(const std::string& path, const SceneOptions& options);
 
+/// Radiance scene, .rad, its commands expanded; file units, overrides not yet applied.
+Scene loadRadiance(const std::string& path, const SceneOptions& options);
+
 /// STL, ASCII or binary by the content; file units, overrides not yet applied.
 Scene loadStl(const std::string& path, const SceneOptions& options);
 

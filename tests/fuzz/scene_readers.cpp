@@ -69,6 +69,7 @@ std::span<const FuzzReader> sceneReaders() {
       FuzzReader{"mtl", readMtl},
       sceneReader("gltf", ".gltf"),
       sceneReader("glb", ".glb"),
+      sceneReader("rad", ".rad"),
       sceneReader("stl", ".stl"),
       sceneReader("ply", ".ply"),
       sceneReader("off", ".off"),

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "radiosity/results.h"
+#include "results/rgbe.h"
 #include "support/results_folder.h"
 
 namespace radiosity {
@@ -55,6 +56,21 @@ TEST_F(ImageFile, ExrIsMultipliedByAlpha) {
   EXPECT_EQ(readImage(path("x.exr")).rgba, written.rgba);
 }
 
+TEST_F(ImageFile, HdrHasASharedExponent) {
+  // Ward's format: mantissas of 256 2^-e, cut off, where the largest is m 2^e with m in [.5, 1).
+  using Bytes = std::array<std::uint8_t, 4>;
+  EXPECT_EQ(rgbeOf({1, 0.5f, 0}), (Bytes{128, 64, 0, 129}));
+  EXPECT_EQ(rgbeOf({0.999f, 0.25f, 0.1f}), (Bytes{255, 64, 25, 128}));
+  EXPECT_EQ(rgbeOf({1e-33f, 0, 0}), (Bytes{0, 0, 0, 0}));
+  // A pixel that misses in part is what reaches it; lines begin with no code of packed ones.
+  writeImage(path("x.hdr"), image(2, 1, {8, 4, 2, 0.25f, 3, 3, 3, 0}), false,
+             std::vector<std::pair<std::string, std::string>>{{"unit", "W/m^2/sr"}});
+  EXPECT_EQ(readImage(path("x.hdr")).rgba, (std::vector<float>{2, 1, 0.5f, 1, 0, 0, 0, 1}));
+  expectError<RunError>(path("y.hdr"), "pixel (1, 0) is -1", [&] {
+    writeImage(path("y.hdr"), image(2, 1, {1, 1, 1, 1, 0, -1, 0, 1}), false);
+  });
+}
+
 TEST_F(ImageFile, PngFollowsTheSrgbCurve) {
   // IEC 61966-2-1: 0.5 -> 187.5 (188), 0.2140 -> 0.5 -> 127.5, and the straight part below
   // 0.0031308: 0.002 -> 0.02584 -> 6.6.
@@ -102,9 +118,10 @@ TEST_F(ImageFile, ReadsGreyAndOpaqueFiles) {
 TEST_F(ImageFile, ErrorsNameTheFile) {
   const Image good = image(1, 1, {0, 0, 0, 1});
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  expectError<InputError>(path("x.tga"), ".png or .exr",
+  expectError<InputError>(path("x.tga"), ".png, .exr or .hdr",
                           [&] { writeImage(path("x.tga"), good, false); });
-  expectError<InputError>(path("x"), ".png or .exr", [&] { writeImage(path("x"), good, false); });
+  expectError<InputError>(path("x"), ".png, .exr or .hdr",
+                          [&] { writeImage(path("x"), good, false); });
   expectError<InputError>(path("no/x.png"), "does not exist",
                           [&] { writeImage(path("no/x.png"), good, false); });
   expectError<InputError>(path("x.png"), "0 x 0 pixels",

@@ -8,7 +8,6 @@
 
 #include "base/luminance.h"
 #include "radiosity/light.h"
-#include "scene/up_vector.h"
 
 namespace radiosity {
 

@@ -12,7 +12,6 @@
 #include "radiosity/light.h"
 #include "scene/lights/light_text.h"
 #include "scene/texture.h"
-#include "scene/up_vector.h"
 
 namespace radiosity {
 
