@@ -75,8 +75,9 @@ std::string number(double value, const ColourRange& range) {
              : text;
 }
 
-/// The multiples of `step` strictly between the ends; those without room beside the end numbers are
-/// marks without a number. Empty if two numbers would touch, or if none fits.
+/// The multiples of `step` strictly between the ends; those without room beside an end number that
+/// is nearer than half a step are marks without a number. Empty if two numbers would touch, if one
+/// would be missing in the row, or if none fits.
 std::vector<Tick> innerTicks(double step, const ColourRange& range, const Tick& first,
                              const Tick& last, int scale) {
   std::vector<Tick> ticks;
@@ -90,6 +91,7 @@ std::vector<Tick> innerTicks(double step, const ColourRange& range, const Tick& 
     const int x = first.x + int(std::lround(range.position(value) * (last.x - first.x)));
     Tick tick = makeTick(x, number(value, range), scale, first.left, last.right);
     if (tick.left < first.right + room || tick.right > last.left - room) {
+      if (std::min(value - range.low, range.high - value) > step / 2) return {};
       tick.text.clear();
     } else {
       if (tick.left < taken) return {};

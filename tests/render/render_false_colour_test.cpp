@@ -197,6 +197,42 @@ TEST(FalseColour, TheBarRunsFromLowToHighAndTheTextStaysInside) {
   }
 }
 
+/// The middles of the numbers in the lowest line of text, in columns.
+std::vector<double> numbersIn(const Image& image, int scale) {
+  std::vector<double> middles;
+  int first = -1;
+  int last = -1;
+  const int between = 3 * scale;  // within a number there are one or two columns of the font
+  for (int x = 0; x <= image.width; ++x) {
+    bool ink = false;
+    for (int y = image.height - (kGlyphHeight + 4) * scale; x < image.width && y < image.height;
+         ++y) {
+      ink = ink || at(image, x, y)[0] > 230;
+    }
+    if (ink && first < 0) first = x;
+    if (first >= 0 && (x - last > between || x == image.width) && !ink) {
+      middles.push_back((first + last) / 2.0);
+      first = -1;
+    }
+    if (ink) last = x;
+  }
+  return middles;
+}
+
+TEST(FalseColour, NoNumberIsMissingInTheRow) {
+  // The last step before the end is as long as the others, wherever there is no room for steps of
+  // 500 beside ">=3000".
+  for (const double high : {3000.0, 500.0, 10000.0, 4.0}) {
+    const Image image = falseColour({0, 0.5 * high, 2 * high}, {"t", "u", 0, high}, 512, 400);
+    const int scale = Legend({"t", "u"}, 512, 400).scale();
+    const std::vector<double> middles = numbersIn(image, scale);
+    ASSERT_GE(middles.size(), 3u) << high;
+    const double step = middles[1] - 4.0 * scale;
+    const double end = 512 - 4.0 * scale;                                       // of the bar
+    EXPECT_NEAR(end - middles[middles.size() - 2], step, 2.0 * scale) << high;  // a glyph is uneven
+  }
+}
+
 TEST(FalseColour, OddRangesAreDrawn) {
   for (const auto& [low, high] : std::vector<std::pair<double, double>>{
            {1, 1}, {-1e300, 1e300}, {0, 5e-324}, {1e15, 1e15 + 1}, {-2, -1}, {1e6, 1e6 + 1e-9}}) {
