@@ -286,4 +286,21 @@ Image falseColourPicture(const PatchMesh& mesh, std::span<const double> values,
                          const FalseColour& legend, const Camera& camera,
                          const RenderOptions& options);
 
+/// What the light of a picture may be shown in.
+struct ShownLight {
+  const char* name;  ///< "luminance"
+  const char* unit;  ///< "cd/m^2"
+  bool photometric;  ///< of colours by luminance, at kLumensPerWatt
+  bool falling;      ///< as it falls on surfaces (fallingLight()), not as it leaves them
+};
+/// radiance, luminance and illuminance.
+std::span<const ShownLight> shownLights();
+
+/// Title and unit for a picture of so many bands; its range is automatic.
+FalseColour legendOf(const ShownLight& shown, int bands);
+
+/// A value a pixel of a picture's radiance, W/m^2/sr (of illuminance, of the picture of
+/// fallingLight()); NaN where nothing was hit.
+std::vector<double> shownValues(const Image& radiance, const ShownLight& shown);
+
 }  // namespace radiosity

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <utility>
 
 #include "base/luminance.h"
@@ -20,9 +18,6 @@ namespace radiosity::cli {
 
 namespace {
 
-constexpr ShownLight kLights[] = {{"radiance", "W/m^2/sr", false, false},
-                                  {"luminance", "cd/m^2", true, false},
-                                  {"illuminance", "lx", true, true}};
 struct PatchWord {
   const char* word;
   Quantity quantity;
@@ -32,9 +27,12 @@ constexpr PatchWord kOfPatches[] = {{"radiosity", Quantity::radiosity},
                                     {"row-sum", Quantity::row_sum}};
 constexpr const char* kFormFactor = "form-factor:";
 
-FalseColour legendOf(const Session& session, std::string title, std::string unit) {
+/// The same with the ends of --range.
+FalseColour inRange(const Session& session, FalseColour legend) {
   const ShownRange range = parseRange(session.request.range);
-  return {.title = std::move(title), .unit = std::move(unit), .low = range.low, .high = range.high};
+  legend.low = range.low;
+  legend.high = range.high;
+  return legend;
 }
 
 /// Of the .exr: the values of a grey picture in a channel of their own name.
@@ -62,7 +60,7 @@ std::string withUnit(const FalseColour& legend) {
 Show parseShow(const std::string& text) {
   if (text.empty()) return {};
   std::vector<std::string> known;
-  for (const ShownLight& light : kLights) {
+  for (const ShownLight& light : shownLights()) {
     if (text == light.name) return {.quantity = {}, .light = light};
     known.emplace_back(light.name);
   }
@@ -108,7 +106,7 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
                   std::size_t patch, OutputSet& files) {
   const PatchMesh& mesh = pipeline.mesh().mesh;
   const ScalarField field = pipeline.field(quantity, patch);
-  const FalseColour legend = legendOf(session, field.legend.title, field.legend.unit);
+  const FalseColour legend = inRange(session, field.legend);
   const auto [low, high] = std::minmax_element(field.values.begin(), field.values.end());
   session.report.text("quantity", "shown", withUnit(legend));
   if (quantity == Quantity::form_factor) describePatch(session.report, mesh, patch);
@@ -133,20 +131,15 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
 
 void drawLight(Session& session, const PatchMesh& mesh, const Image& radiance, int bands,
                const Picture& picture, const ShownLight& unit, OutputSet& files) {
+  const std::vector<double> values = shownValues(radiance, unit);
   Image grey = radiance;
-  std::vector<double> values;
   std::vector<double> shown;
-  for (std::size_t k = 0; k < grey.rgba.size(); k += 4) {
-    float* p = &grey.rgba[k];
-    const double colour[] = {p[0], p[1], p[2]};
-    const double value = (unit.falling ? std::numbers::pi : 1) *
-                         (unit.photometric ? photometricOf(colour) : brightnessOf(colour));
-    std::fill_n(p, 3, float(value));
-    values.push_back(p[3] > 0 ? value : std::numeric_limits<double>::quiet_NaN());
-    if (p[3] > 0) shown.push_back(value);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const bool hit = !std::isnan(values[k]);
+    std::fill_n(&grey.rgba[4 * k], 3, hit ? float(values[k]) : 0.f);
+    if (hit) shown.push_back(values[k]);
   }
-  const FalseColour legend = legendOf(
-      session, std::string(unit.name) + (unit.photometric ? "" : brightnessText(bands)), unit.unit);
+  const FalseColour legend = inRange(session, legendOf(unit, bands));
   Report& report = session.report;
   report.section("shown", "Shown in false colours");
   report.text("quantity", "shown", withUnit(legend));

@@ -10,14 +10,6 @@
 
 namespace radiosity::cli {
 
-/// What the picture's light is measured in.
-struct ShownLight {
-  const char* name;  ///< "luminance"
-  const char* unit;  ///< "cd/m^2"
-  bool photometric;
-  bool falling;  ///< as it falls on surfaces, not as it leaves them
-};
-
 /// The quantity of --show; neither: the lit scene itself.
 struct Show {
   std::optional<Quantity> quantity;  ///< of patches

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ struct GatheredHandle {
 struct HeatHandle {
   std::shared_ptr<const FactorsHandle> factors;
   HeatSolution solution;
+  std::optional<HeatOptions> options;  ///< none: it was read
   std::vector<Note> notes;  ///< on the conditions
   Key key;
 };
@@ -65,6 +67,7 @@ void bindFactors(pybind11::module_& module);
 void bindLight(pybind11::module_& module);
 void bindGather(pybind11::module_& module);
 void bindPoints(pybind11::module_& module);
+void bindPictures(pybind11::module_& module);
 
 /// The mesh of form factors. Errors: InputError if they are a matrix alone; it names `asks`, the
 /// feature that needs the mesh.

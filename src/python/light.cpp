@@ -1,8 +1,6 @@
-// Light and heat on form factors, and pictures of light.
+// Light and heat on form factors.
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <tuple>
@@ -88,6 +86,7 @@ std::shared_ptr<HeatHandle> heat(std::shared_ptr<FactorsHandle> factors,
   const HeatOptions options = optionsFrom<HeatOptions>(given);
   auto handle = std::make_shared<HeatHandle>();
   handle->factors = std::move(factors);
+  handle->options = options;
   const FactorsHandle& of = *handle->factors;
   const HeatConditions conditions =
       conditionsOf(of, readConditionText(table_path, settings, groups));
@@ -117,6 +116,7 @@ std::shared_ptr<HeatHandle> heatOfRows(std::shared_ptr<FactorsHandle> factors,
   const HeatOptions options = optionsFrom<HeatOptions>(given);
   auto handle = std::make_shared<HeatHandle>();
   handle->factors = std::move(factors);
+  handle->options = options;
   const FactorsHandle& of = *handle->factors;
   const std::size_t rows = of.factors.matrix->size();
   std::vector<HeatCondition> conditions(rows);
@@ -144,128 +144,6 @@ py::list heatTable(const HeatHandle& heat) {
     list.append(dictOf(surface));
   }
   return list;
-}
-
-py::dict cameraProperties(const py::object& given) {
-  constexpr std::array kKnown = {"name", "eye", "target", "up", "aspect", "vertical_fov"};
-  if (!py::isinstance<py::dict>(given)) refuse("camera", given, "a name, a text or a dict");
-  auto properties = given.cast<py::dict>();
-  for (const auto& [name, value] : properties) {
-    const std::string word = py::str(name);
-    if (std::ranges::find(kKnown, word) == kKnown.end()) {
-      throw InputError(fmt::format("camera: has no property '{}'; there are: {} (radians)", word,
-                                   fmt::join(kKnown, ", ")));
-    }
-  }
-  return properties;
-}
-
-/// Makes a camera from a dictionary like those of Scene.cameras, from a text, or from the name of
-/// one in the scene. Empty for None in a scene without cameras.
-std::optional<Camera> cameraOf(const py::object& given, const Scene* scene) {
-  if (given.is_none()) {
-    if (scene == nullptr || scene->cameras.empty()) return std::nullopt;
-    return scene->cameras.front();
-  }
-  if (py::isinstance<py::str>(given)) {
-    const auto text = given.cast<std::string>();
-    for (const Camera& camera : scene != nullptr ? scene->cameras : std::vector<Camera>()) {
-      if (camera.name == text) return camera;
-    }
-    return parseCamera(text);
-  }
-  const KeywordOptions take(cameraProperties(given), "camera");
-  Camera camera;
-  Triple eye{}, target{}, up{camera.up.x, camera.up.y, camera.up.z};
-  if (!take.has("eye") || !take.has("target")) {
-    throw InputError(
-        "camera: has no eye or no target; give {'eye': (x, y, z), 'target': (x, y, z)}");
-  }
-  take("name", camera.name);
-  take("eye", eye);
-  take("target", target);
-  take("up", up);
-  take("vertical_fov", camera.vertical_fov);
-  take("aspect", camera.aspect);
-  camera.eye = vec(eye);
-  camera.target = vec(target);
-  camera.up = vec(up);
-  return camera;
-}
-
-int otherSide(double pixels) { return std::max(1, int(std::lround(pixels))); }
-
-/// Sets the size of the picture; a side that is not given follows from the camera.
-void takeSize(const KeywordOptions& take, const std::optional<Camera>& camera,
-              RenderOptions& options) {
-  take("width", options.width);
-  take("height", options.height);
-  const double aspect = camera && camera->aspect > 0 ? camera->aspect : 1;
-  if (!take.has("height")) options.height = otherSide(options.width / aspect);
-  if (!take.has("width") && take.has("height")) options.width = otherSide(options.height * aspect);
-}
-
-/// Adds elements of the visible surfaces, like the command line; of a scene's own materials also
-/// their textures.
-void addElements(const MeshHandle& handle, const SolutionHandle& light, const Camera& camera,
-                 const RenderOptions& options, const ElementOptions& elements, SurfaceLight& drawn,
-                 Progress& progress) {
-  const PatchMesh& mesh = handle.result.mesh;
-  const std::vector<std::uint8_t> wanted = visiblePatches(mesh, camera, options, progress);
-  drawn.elements = std::make_shared<const Elements>(computeElements(
-      mesh, *light.materials, light.solution.irradiance, elements, wanted, progress));
-  drawn.reflectance = light.materials->reflectance;
-  drawn.emission = light.materials->emission;
-  if (handle.scene && light.materials.get() == &handle.materials) {
-    drawn.materials = pointMaterials(*handle.scene, mesh, handle.materials, wanted);
-  }
-}
-
-/// The picture of a solution, or of radiosities (N, bands) if `light` is null.
-py::array render(const MeshHandle& mesh, const SolutionHandle* light,
-                 const Array<double>& radiosity, const py::object& from, const py::dict& given,
-                 const py::object& report) {
-  const KeywordOptions take(given);
-  RenderOptions options;
-  ElementOptions element_options;
-  bool with_elements = light != nullptr;
-  RenderOptions::describe(take, options);
-  take("crease", element_options.crease);
-  take("elements", with_elements);
-  take("element_tolerance", element_options.tolerance);
-  std::optional<Camera> camera = cameraOf(from, mesh.scene.get());
-  takeSize(take, camera, options);
-  options.validate();
-  const PatchMesh& patches = mesh.result.mesh;
-  const PatchMaterials plain{int(radiosity.shape(1)),
-                             std::vector<double>(std::size_t(radiosity.size()), 0.0),
-                             std::vector<double>(std::size_t(radiosity.size()), 0.0),
-                             {}};
-  Image image;
-  runLong(report, [&](Progress& progress) {
-    const PatchMaterials& materials = light != nullptr ? *light->materials : plain;
-    const bool closed = light != nullptr && light->factors->factors.report.closed;
-    SurfaceLight drawn = surfaceLight(spanOf(radiosity), materials);
-    if (!camera) {
-      camera = framingCamera(patches, closed, double(options.width) / double(options.height),
-                             drawn.reflected);
-    }
-    if (with_elements) {
-      addElements(mesh, *light, *camera, options, element_options, drawn, progress);
-    }
-    image = renderRadiance(patches, drawn, *camera, options, progress);
-  });
-  const std::vector<py::ssize_t> shape{image.height, image.width, 4};
-  return taken(std::move(image.rgba)).reshape(shape);
-}
-
-double exposure(const py::array_t<float, py::array::c_style>& picture) {
-  Image image;
-  image.height = int(picture.shape(0));
-  image.width = int(picture.shape(1));
-  const py::gil_scoped_release unlocked;
-  image.rgba.assign(picture.data(), picture.data() + picture.size());
-  return autoExposure(image);
 }
 
 template <class Handle>
@@ -320,8 +198,6 @@ void bindLight(py::module_& module) {
   module.def("heat", &heat);
   module.def("heat_of_rows", &heatOfRows);
   module.def("heat_table", &heatTable);
-  module.def("render", &render);
-  module.def("exposure", &exposure);
 }
 
 }  // namespace radiosity::python

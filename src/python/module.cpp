@@ -153,6 +153,7 @@ PYBIND11_MODULE(_core, module) {
   python::bindFactors(module);
   python::bindLight(module);
   python::bindPoints(module);
+  python::bindPictures(module);
   python::bindGather(module);
   module.def("read", &python::read);
   module.def("save", &python::save);

@@ -1,4 +1,4 @@
-// Light at measuring points.
+// Light and heat at measuring points.
 #include "arrays.h"
 #include "handles.h"
 #include "long_call.h"
@@ -21,8 +21,7 @@ py::dict illuminance(const SolutionHandle& light, const Array<double>& points,
   const MeshHandle& mesh = meshOf(*light.factors, "illuminance");
   const Up up = mesh.scene ? mesh.scene->up : Up::y;
   const std::span<const Vec3> at = vectorsOf(points);
-  const std::vector<Vec3> upward(normals ? 0 : at.size(),
-                                 up == Up::y ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
+  const std::vector<Vec3> upward(normals ? 0 : at.size(), upVector(up));
   const std::span<const Vec3> ways = normals ? vectorsOf(*normals) : std::span(upward);
   PointLightValues values;
   runLong(report, [&](Progress& progress) {
@@ -39,8 +38,33 @@ py::dict illuminance(const SolutionHandle& light, const Array<double>& points,
   return out;
 }
 
+/// `sky_temperature`: K; none: that of the heat.
+py::tuple radiantTemperature(const HeatHandle& heat, const Array<double>& points,
+                             std::optional<double> sky_temperature, const py::object& report) {
+  const MeshHandle& mesh = meshOf(*heat.factors, "radiant_temperature");
+  HeatOptions options = heat.options.value_or(HeatOptions());
+  if (sky_temperature) {
+    options.sky_temperature = *sky_temperature;
+  } else if (!heat.options) {
+    throw InputError("sky_temperature: is not known of heat that was read; give it, in K");
+  }
+  options.validate();
+  RadiantTemperatures found;
+  runLong(report, [&](Progress& progress) {
+    found = radiantTemperatures(mesh.result.mesh, heat.solution, options, vectorsOf(points),
+                                mesh.scene ? mesh.scene->up : Up::y, progress);
+  });
+  const std::vector<py::ssize_t> faces{points.shape(0), py::ssize_t(kRadiantFaces)};
+  return py::make_tuple(taken(std::move(found.standing)), taken(std::move(found.seated)),
+                        taken(std::move(found.plane)).reshape(faces),
+                        taken(std::move(found.surfaces)));
+}
+
 }  // namespace
 
-void bindPoints(py::module_& module) { module.def("illuminance", &illuminance); }
+void bindPoints(py::module_& module) {
+  module.def("illuminance", &illuminance);
+  module.def("radiant_temperature", &radiantTemperature);
+}
 
 }  // namespace radiosity::python

@@ -72,6 +72,27 @@ def test_pictures_are_the_same(run_program, elements):
     assert np.array_equal(image, exr(folder / "p.exr"))
 
 
+def test_radiant_temperatures_are_the_same(run_program):
+    conditions = ["--condition", "*.emissivity=0.8", "--condition", "lamp.temperature=900",
+                  "--condition", "*.flux=0", "--sky-temperature", 280]
+    folder = run_program("heat", SCENE, "--patches", 80, "--method", "exact", *conditions,
+                         "--plane", ".1,.45,.1:.4,.45,.1:.4,.45,.4:.1", "--point-table", "t.csv")
+    table = np.genfromtxt(folder / "t.csv", delimiter=",", names=True)
+    F = rad.form_factors(rad.mesh(rad.load(SCENE), patches=80), method="exact")
+    heat = rad.heat(F, 0.8, {"lamp": 900, "*": None}, sky_temperature=280)
+    points = np.stack([table[name] for name in ("x_m", "y_m", "z_m")], axis=-1)
+    felt = heat.radiant_temperature(points)
+    # Above the blocks; the table has 6 digits or more.
+    assert np.allclose(felt.standing, table["standing_K"], rtol=2e-6) and len(points) > 3
+    assert np.allclose(felt.seated, table["seated_K"], rtol=2e-6)
+    assert (felt.plane.max(axis=1) > felt.standing).all()
+    colder = heat.radiant_temperature(points, sky_temperature=0)
+    assert (colder.standing < felt.standing).all()
+    F.save(folder / "h.h5", heat=heat)
+    with pytest.raises(rad.InputError, match="sky_temperature: is not known"):
+        rad.read(folder / "h.h5").heat.radiant_temperature(points)
+
+
 def test_a_picture_of_all_defaults_is_the_same(run_program):
     folder = run_program("solve", SCENE, "-o", "s.h5")
     run_program("render", "s.h5", "-o", "p.exr")

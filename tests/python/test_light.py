@@ -275,6 +275,47 @@ def test_arrays_are_drawn_as_radiance(cornell):
     assert shown.min() >= 0 and shown.max() <= 1
 
 
+def test_light_is_shown_in_lux(cube):
+    light = rad.solve(cube, reflectance=0.5, emission=np.ones(24), tolerance=1e-9)
+    # B = H = E / (1 - rho) = 2 W/m^2 everywhere, for rows that sum to 1 within 1e-6; 683 lm/W.
+    for show, expected in [("illuminance", 683 * 2), ("luminance", 683 * 2 / np.pi), ("radiance", 2 / np.pi)]:
+        shown = rad.render(cube.mesh, light, width=20, height=10, show=show, elements=False)
+        assert shown.values.shape == (10, 20) and shown.values.dtype == np.float64
+        assert np.allclose(shown.values, expected, rtol=1e-5), show
+        assert shown.image.shape == (10, 20, 4)  # too small for a legend
+    shown = rad.render(cube.mesh, light, width=128, show="luminance", range=(0, 1000))
+    assert shown.image.shape[0] > 128 and 0 <= shown.image.min() and shown.image.max() <= 1
+    # Other ends, other colours.
+    assert (rad.render(cube.mesh, light, width=128, show="luminance", range=(0, 500)).image != shown.image).any()
+
+
+def test_a_picture_has_layers(cornell):
+    light = rad.solve(cornell)
+    image, layers = rad.render(cornell.mesh, light, width=24, samples=2, layers=True)
+    assert set(layers) == {"depth", "normal", "patch", "surface", "albedo", "direct", "indirect"}
+    whole = image[..., :3] * image[..., 3:]
+    assert np.allclose(layers["direct"] + layers["indirect"], whole, atol=1e-5 * whole.max())  # float32
+    hit = layers["patch"][..., 0] >= 0
+    assert np.allclose(np.linalg.norm(layers["normal"][hit], axis=-1), 1, atol=1e-6)
+    assert np.isinf(layers["depth"][~hit]).all()
+    of = layers["patch"][..., 0][hit].astype(int)
+    assert (cornell.mesh.surface[of] == layers["surface"][..., 0][hit]).all()
+
+
+def test_what_cannot_be_shown_is_refused(cornell):
+    light = rad.solve(cornell)
+    ones = np.ones(len(cornell.mesh))
+    for call, match in [(dict(show="glare"), "show: is 'glare'; give one of: radiance, luminance, illuminance"),
+                        (dict(show="luminance", range=(5, 5)), "range: is 5.0, 5.0"),
+                        (dict(range=(0, 5)), "range: is of false colours"),
+                        (dict(show="radiance", layers=True), "layers: are of the lit picture"),
+                        (dict(layers=True, elements=False), "direct")]:
+        with pytest.raises(rad.InputError, match=match):
+            rad.render(cornell.mesh, light, width=8, **call)
+    with pytest.raises(rad.InputError, match="illuminance needs a Solution"):
+        rad.render(cornell.mesh, ones, show="illuminance")
+
+
 def test_heat_and_gathered_light_are_drawn(cornell):
     mesh = cornell.mesh
     oven = rad.heat(rad.form_factors(mesh, 0.1), 0.8, {"lamp": 1200, "*": 300})

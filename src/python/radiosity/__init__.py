@@ -31,16 +31,16 @@ from ._factors import FormFactors, Table, form_factors, from_csr, view_factors_f
 from ._files import Results, read
 from ._foreign import from_meshio, from_trimesh
 from ._gather import Gathered, gather
-from ._heat import Heat, heat
+from ._heat import Heat, RadiantTemperature, heat
 from ._illuminance import Illuminance
 from ._light import Solution, solve
 from ._mesh import Mesh, mesh
-from ._picture import displayed, render
+from ._picture import FalseColours, Layers, displayed, render
 from ._scene import Light, Scene, load
 
 __all__ = [
-    "FormFactors", "Gathered", "Heat", "Illuminance", "InputError", "Light", "Mesh", "Results", "RunError", "Scene", "Solution",
-    "Table", "__version__", "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "gather", "heat",
+    "FalseColours", "FormFactors", "Gathered", "Heat", "Illuminance", "InputError", "Layers", "Light", "Mesh",
+    "RadiantTemperature", "Results", "RunError", "Scene", "Solution", "Table", "__version__", "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "gather", "heat",
     "load", "mesh", "read", "render", "set_threads", "solve", "view_factors_from",
 ]
 

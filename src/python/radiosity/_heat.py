@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Mapping, Optional, Sequence, Union
+from typing import Any, List, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
@@ -17,6 +17,15 @@ from ._progress import Progress, reporting
 
 #: One value for all surfaces, or values by name.
 ByName = Union[float, Mapping[str, Any]]
+
+
+class RadiantTemperature(NamedTuple):
+    """What a person at P points feels of the surroundings, K; made by Heat.radiant_temperature()."""
+
+    standing: np.ndarray  # (P,): mean radiant temperature of ISO 7726, by the six faces of a small cube
+    seated: np.ndarray  # (P,)
+    plane: np.ndarray  # (P, 6): of each face, which look to +x, -x, +y, -y, +z, -z
+    surfaces: np.ndarray  # (P,): the share of what the cube sees that are fronts of surfaces
 
 
 class Heat(Fixed):
@@ -69,6 +78,28 @@ class Heat(Fixed):
         lowest, highest (K), radiosity, irradiance, irradiance_error (None: unknown), net_flux (W/m^2),
         radiated, convected (W)."""
         return _core.heat_table(self._handle)
+
+    def radiant_temperature(self, points: Any, *, sky_temperature: Optional[float] = None,
+                            progress: Progress = None) -> RadiantTemperature:
+        """The radiant temperature of surfaces and sky at points, (P, 3), metres: that of uniform black
+        surroundings which send as much heat.
+
+        sky_temperature: K; default: that of heat(). Errors: InputError naming the point, and for heat that was
+        read without it.
+
+        >>> F = rad.form_factors(rad.mesh(rad.load("data/furnace-cube.obj"), patches=24), tolerance=1e-6)
+        >>> oven = rad.heat(F, emissivity=0.9, temperature=400)
+        >>> middle = F.mesh.vertices.mean(axis=0)
+        >>> float(oven.radiant_temperature([middle]).standing[0].round(3))  # all around is as hot
+        400.0
+        """
+        if self.form_factors.mesh is None:
+            raise InputError("radiant_temperature: these form factors are a matrix without a mesh; use those of "
+                             "form_factors(mesh)")
+        places = numbers("points", points, [(None, 3)])
+        sky = None if sky_temperature is None else float(numbers("sky_temperature", sky_temperature, [()]))
+        with reporting(progress) as report:
+            return RadiantTemperature(*_core.radiant_temperature(self._handle, places, sky, report))
 
     def __repr__(self) -> str:
         return f"<Heat of {len(self.temperature):,} rows, {self.summary['status']}>"

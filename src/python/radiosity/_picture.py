@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any, Dict, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _core
-from ._arrays import numbers, require
+from ._arrays import numbers, require, yes_or_no
 from ._core import InputError
 from ._factors import FormFactors
 from ._gather import Gathered
@@ -17,10 +17,29 @@ from ._mesh import Mesh
 from ._progress import Progress, reporting
 
 
+class FalseColours(NamedTuple):
+    """A picture of the light in a unit; made by render() with `show`."""
+
+    values: np.ndarray  # (height, width) float64; NaN where nothing is
+    image: np.ndarray  # (more, width, 4) float32, 0 to 1, sRGB: false colours and lines, the legend below
+
+
+class Layers(NamedTuple):
+    """A picture and what it is made of; made by render() with `layers`."""
+
+    image: np.ndarray  # (height, width, 4) float32, W/m^2/sr
+    #: (height, width, channels) float32 by name: depth (m, infinite where nothing is), normal (3, 0 there),
+    #: patch, surface (numbers, -1 there), albedo (3), direct and indirect (3, W/m^2/sr: their sum is the
+    #: picture times its alpha)
+    layers: Dict[str, np.ndarray]
+
+
 def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional[int] = None, *,
            camera: Any = None, samples: int = 4, smooth: bool = True, crease: float = 30.0,
            show_backs: bool = False, elements: Optional[bool] = None,
-           element_tolerance: Optional[float] = None, progress: Progress = None) -> np.ndarray:
+           element_tolerance: Optional[float] = None, show: Optional[str] = None,
+           range: Optional[Sequence[float]] = None, layers: bool = False,
+           progress: Progress = None) -> Union[np.ndarray, FalseColours, Layers]:
     """The picture of a Solution, of Heat or Gathered light, or of radiosities (N,) or (N, 3), W/m^2:
     (height, width, 4) float32.
 
@@ -32,6 +51,10 @@ def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional
     the picture shows (default: of a Solution; slower, and what the command line draws); False: of the
     patches alone. No copy of the picture is made.
 
+    show: "illuminance" (lx, on surfaces as they face, of a Solution), "luminance" (cd/m^2) or
+    "radiance" (W/m^2/sr); the result is FalseColours then, its colours of `range`, (low, high), or of
+    the values in view. layers: the result is Layers.
+
     Errors: InputError naming the option or the camera, and for light of 2 or more than 3 bands.
 
     >>> mesh = rad.mesh(rad.load("data/cornell-box.obj"), patches=100)
@@ -39,6 +62,8 @@ def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional
     >>> image = rad.render(mesh, light, width=16, elements=False)
     >>> image.shape, image.dtype
     ((16, 16, 4), dtype('float32'))
+    >>> rad.render(mesh, light, width=16, elements=False, show="illuminance").values.shape
+    (16, 16)
     """
     require("mesh", mesh, Mesh, "a Mesh: rad.mesh(scene)")
     handle = None
@@ -61,8 +86,26 @@ def render(mesh: Mesh, light: Any, width: Optional[int] = None, height: Optional
                    show_backs=show_backs, elements=elements and smooth if handle is None else
                    (smooth if elements is None else elements),
                    element_tolerance=element_tolerance)
+    drawn = (mesh._handle, handle, values, camera, options)
+    if yes_or_no("layers", layers):
+        if show is not None:
+            raise InputError("layers: are of the lit picture; leave out show")
+        with reporting(progress) as report:
+            return Layers(*_core.render_layers(*drawn, report))
+    if show is None:
+        if range is not None:
+            raise InputError("range: is of false colours; give show, or leave it out")
+        with reporting(progress) as report:
+            return _core.render(*drawn, report)
+    require("show", show, str, "text: illuminance, luminance or radiance")
+    ends = None
+    if range is not None:
+        low, high = numbers("range", range, [(2,)], "low, high").tolist()
+        if not low < high:
+            raise InputError(f"range: is {low}, {high}; give two rising numbers")
+        ends = (low, high)
     with reporting(progress) as report:
-        return _core.render(mesh._handle, handle, values, camera, options, report)
+        return FalseColours(*_core.render_shown(*drawn, show, ends, report))
 
 
 def displayed(image: np.ndarray, exposure: Optional[float] = None) -> np.ndarray:
