@@ -179,7 +179,17 @@ AssimpScene sceneOf(const aiScene& file) {
     }
     scene.images.push_back(std::move(image));
   }
-  scene.lights = file.mNumLights;
+  for (unsigned l = 0; l < file.mNumLights; ++l) {
+    const aiLight& light = *file.mLights[l];
+    const aiColor3D& colour = light.mColorDiffuse;
+    scene.lights.push_back({light.mName.C_Str(),
+                            std::uint32_t(light.mType),
+                            tripleOf(light.mPosition),
+                            tripleOf(light.mDirection),
+                            {colour.r, colour.g, colour.b},
+                            light.mAngleInnerCone,
+                            light.mAngleOuterCone});
+  }
   scene.centimetres = centimetresOf(file);
   return scene;
 }

@@ -94,6 +94,47 @@ Connections:  {
 """
 
 
+def with_lights(*kinds):
+    """The plate and a light of each kind (0 point, 1 sun, 2 spot): 2 m up, pointing along -y, but for a turn of the spot
+    that makes it point along -z."""
+    objects = links = ""
+    for k, kind in enumerate(kinds):
+        a, m = 100 + 2 * k, 101 + 2 * k
+        turn = '            P: "Lcl Rotation", "Lcl Rotation", "", "A",90,0,0\n' if kind == 2 else ""
+        objects += f"""    NodeAttribute: {a}, "NodeAttribute::lamp{k}", "Light" {{
+        Properties70:  {{
+            P: "LightType", "enum", "", "",{kind}
+            P: "Color", "Color", "", "A",1,0.5,0.25
+            P: "Intensity", "Number", "", "A",2000
+            P: "InnerAngle", "Number", "", "A",40
+            P: "OuterAngle", "Number", "", "A",60
+        }}
+    }}
+    Model: {m}, "Model::lamp{k}", "Light" {{
+        Version: 232
+        Properties70:  {{
+            P: "Lcl Translation", "Lcl Translation", "", "A",50,50,200
+{turn}        }}
+    }}
+"""
+        links += f'    C: "OO",{m},0\n    C: "OO",{a},{m}\n'
+    text = FBX.replace('    Geometry: 1,', objects + '    Geometry: 1,')
+    return text.replace('    C: "OO",2,0\n', links + '    C: "OO",2,0\n')
+
+
+COLLADA_LIGHTS = (COLLADA
+    .replace("<library_effects>", """<library_lights>
+<light id="p"><technique_common><point><color>8 4 2</color></point></technique_common></light>
+<light id="d"><technique_common><directional><color>3 2 1</color></directional></technique_common></light>
+<light id="s"><technique_common><spot><color>3 2 1</color></spot></technique_common></light>
+<light id="a"><technique_common><ambient><color>3 2 1</color></ambient></technique_common></light>
+</library_lights><library_effects>""")
+    .replace("</visual_scene>", """<node id="n1" name="bulb"><translate>50 50 300</translate>
+<instance_light url="#p"/></node><node id="n2" name="day"><rotate>1 0 0 -90</rotate><instance_light url="#d"/></node>
+<node id="n3" name="beam"><instance_light url="#s"/></node>
+<node id="n4" name="all"><instance_light url="#a"/></node></visual_scene>"""))
+
+
 def chunk(number, body):
     return struct.pack("<HI", number, 6 + len(body)) + body
 
@@ -221,6 +262,50 @@ class OtherFormats(CliTest):
         surface, material = self.only_surface("a.fbx", FBX, "--default-reflectance", ".3")
         self.assertEqual([surface["name"], surface["area_m2"]], ["wall", 1])
         self.assertEqual(material["reflectance"], "0.3, 0.3, 0.3")
+
+    def lights_of(self, name, content):
+        run = self.run_program("info", self.put(name, content))
+        return run, {light["name"]: light for light in self.report("info", name)["scene"]["lights"]}
+
+    def assert_up(self, sun):
+        toward = np.array(sun["stands"].removeprefix("towards ").split(", "), float)
+        np.testing.assert_allclose(toward, [0, 1, 0], atol=1e-6)  # floats
+
+    def test_lights_of_fbx(self):
+        """Watts, as Blender writes them: 20 W in all directions are 20 / (4 pi) W/sr. Centimetres are metres."""
+        run, lights = self.lights_of("a.fbx", with_lights(0, 1, 2))
+        watts = [20 / (4 * math.pi) * share for share in (1, .5, .25)]
+        for name, kind in [("lamp0", "point"), ("lamp2", "spot")]:
+            light = lights[name]
+            self.assertEqual(light["kind"], kind)
+            np.testing.assert_allclose(np.array(light["strength"].removesuffix(" W/sr").split(", "), float), watts,
+                                       rtol=1e-5)  # six digits
+            self.assertIn("0.5, 0.5, 2", light["stands"])
+        self.assertEqual(lights["lamp1"]["strength"], "20, 10, 5 W/m^2")
+        self.assert_up(lights["lamp1"])
+        self.assertIn("lamps have no unit in this format", run.err)
+        # The spot lights the middle of the plate, 2 m off: P / (4 pi) / d^2. Its cones are 40 and 60 degrees wide.
+        for at, share in [((.5, .5, 0), 1), ((.5, .5 + 2 * math.tan(math.radians(19)), 0), math.cos(math.radians(19)) ** 3),
+                          ((.5, .5 + 2 * math.tan(math.radians(31)), 0), 0)]:
+            self.write("p.csv", "x,y,z,nx,ny,nz\n" + ",".join(map(str, at)) + ",0,0,1\n")
+            self.run_program("illuminance", "a.fbx", "--without", "lamp0", "--without", "lamp1", "--set",
+                             "all.reflectance=0", "--points", "p.csv", "-o", "o.csv")
+            found = np.genfromtxt(self.folder / "o.csv", delimiter=",", names=True)["illuminance_lx"]
+            expected = 683 * np.dot(watts, (.2126, .7152, .0722)) / 4 * share
+            np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-9)  # points stand 1e-5 m off
+
+    def test_lights_of_collada(self):
+        run, lights = self.lights_of("a.dae", COLLADA_LIGHTS)
+        self.assertEqual(set(lights) - {"sky"}, {"bulb", "day"})
+        np.testing.assert_allclose(np.array(lights["bulb"]["strength"].removesuffix(" W/sr").split(", "), float),
+                                   np.array([8, 4, 2]) / (4 * math.pi), rtol=1e-5)
+        self.assertIn("0.5, 0.5, 3", lights["bulb"]["stands"])
+        self.assertEqual(lights["day"]["strength"], "3, 2, 1 W/m^2")
+        self.assert_up(lights["day"])
+        self.assertIn("spots are read of FBX alone, and left out: beam", run.err)
+        self.assertIn("ambient light is left out", run.err)
+        self.says(f": bulb intensity {-8 / (4 * math.pi)} is not a finite value of 0 or more; correct the light",
+                  "a.dae", COLLADA_LIGHTS.replace("<color>8 4 2", "<color>-8 4 2"))
 
     def test_off_is_read(self):
         surface, _ = self.only_surface("a.off", OFF)

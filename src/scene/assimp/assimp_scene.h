@@ -57,6 +57,13 @@ struct AssimpCamera {
   std::array<float, 3> eye = {}, up = {}, forward = {};
 };
 
+struct AssimpLight {
+  std::string node;
+  std::uint32_t kind = 0;  ///< aiLightSourceType
+  std::array<float, 3> place = {}, direction = {}, colour = {};
+  float inner = 0, outer = 0;  ///< radians, of a spot's cones
+};
+
 struct AssimpImage {
   std::uint8_t is_bare = 0;  ///< of bare texels, which are left out
   std::string bytes;         ///< of an image file
@@ -68,7 +75,7 @@ struct AssimpScene {
   std::vector<AssimpFileMaterial> materials;
   std::vector<AssimpCamera> cameras;
   std::vector<AssimpImage> images;
-  std::uint32_t lights = 0;           ///< their number
+  std::vector<AssimpLight> lights;
   std::optional<double> centimetres;  ///< a unit, if the file says so
 };
 
@@ -202,6 +209,17 @@ void passCamera(Stream& stream, Camera& camera) {
   stream.number(camera.forward);
 }
 
+template <class Stream, class Light>
+void passLight(Stream& stream, Light& light) {
+  stream.whole(light.node);
+  stream.number(light.kind);
+  stream.number(light.place);
+  stream.number(light.direction);
+  stream.number(light.colour);
+  stream.number(light.inner);
+  stream.number(light.outer);
+}
+
 template <class Stream, class Scene>
 void passScene(Stream& stream, Scene& scene) {
   const auto all = [&stream](auto& list, const auto& pass) {
@@ -216,7 +234,7 @@ void passScene(Stream& stream, Scene& scene) {
     stream.number(image.is_bare);
     stream.whole(image.bytes);
   });
-  stream.number(scene.lights);
+  all(scene.lights, [&](auto& light) { passLight(stream, light); });
   passNumber(stream, scene.centimetres);
 }
 

@@ -16,9 +16,11 @@
 #include "base/finite.h"
 #include "base/input_file.h"
 #include "radiosity/spelling.h"
+#include "scene/assimp/assimp_lights.h"
 #include "scene/assimp/assimp_materials.h"
 #include "scene/assimp/assimp_process.h"
 #include "scene/assimp/assimp_scene.h"
+#include "scene/assimp/assimp_vectors.h"
 #include "scene/assimp/collada_cameras.h"
 #include "scene/assimp/nesting_preflight.h"
 #include "scene/assimp/xml_preflight.h"
@@ -48,13 +50,10 @@ class AssimpReader {
     }
     materials_ = readAssimpMaterials(file, options_, scene_, notes_);
     scale_ = file.centimetres.value_or(100) / 100;
-    addNodes(file);
+    AssimpLights lights(file.lights, extension, scale_, notes_);
+    addNodes(file, lights);
     if (scene_.faceCount() == 0) failWithoutFaces();
-    if (file.lights > 0) {
-      scene_.notes.push_back(
-          {Severity::warning, "lights without a surface are left out; make a surface a lamp by " +
-                                  spelled("set", "NAME.radiance=10")});
-    }
+    lights.addTo(scene_);
     notes_.appendTo(scene_.notes);
     builder_.finish();
     // In all of these formats a texture replaces the colour.
@@ -75,7 +74,7 @@ class AssimpReader {
 
   std::string objectName(const AssimpScene& file, const AssimpNode& node,
                          const AssimpMesh& mesh) const;
-  void addNodes(const AssimpScene& file);
+  void addNodes(const AssimpScene& file, AssimpLights& lights);
   std::vector<Vec3> coloursOf(const AssimpMesh& mesh, const std::string& object);
   void addMesh(const AssimpMesh& mesh, const std::string& object, const aiMatrix4x4& place);
   Index colouredByVertices(Index material);
@@ -119,9 +118,7 @@ aiMatrix4x4 matrixOf(const std::array<float, 16>& m) {
           m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
 }
 
-aiVector3D vectorOf(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
-void AssimpReader::addNodes(const AssimpScene& file) {
+void AssimpReader::addNodes(const AssimpScene& file, AssimpLights& lights) {
   for (const AssimpCamera& camera : file.cameras) camera_of_.emplace(camera.node, &camera);
   std::vector<aiMatrix4x4> places;
   for (const AssimpNode& node : file.nodes) {
@@ -132,6 +129,7 @@ void AssimpReader::addNodes(const AssimpScene& file) {
       addMesh(mesh, objectName(file, node, mesh), place);
     }
     addCameras(node, place);
+    lights.addNode(node.name, place);
   }
 }
 
@@ -180,7 +178,7 @@ void AssimpReader::addMesh(const AssimpMesh& mesh, const std::string& object,
   if (first + mesh.vertices.size() >= kNone) fail("too many vertices; split the scene");
   for (const std::array<float, 3>& vertex : mesh.vertices) {
     const aiVector3D p = place * vectorOf(vertex);
-    scene_.vertices.push_back(scale_ * Vec3(double(p.x), double(p.y), double(p.z)));
+    scene_.vertices.push_back(scale_ * doublesOf(p));
     if (!isFinite(scene_.vertices.back())) {
       fail(fmt::format("object {}: a coordinate is not a finite number; export it again", object));
     }
@@ -224,16 +222,13 @@ void AssimpReader::addMesh(const AssimpMesh& mesh, const std::string& object,
 
 /// Adds the cameras of a node. Assimp's angle is the full horizontal one for all formats.
 void AssimpReader::addCameras(const AssimpNode& node, const aiMatrix4x4& place) {
-  const auto doubles = [](const aiVector3D& v) {
-    return Vec3(double(v.x), double(v.y), double(v.z));
-  };
   const aiMatrix3x3 turn(place);
   const auto add = [&](Camera camera, const AssimpCamera& pose) {
     const std::string& id = node.collada_id;
     camera.name = isMadeUp(node.name) && !id.empty() ? id : node.name;
-    camera.eye = scale_ * doubles(place * vectorOf(pose.eye));
-    camera.up = doubles(turn * vectorOf(pose.up));
-    addCamera(std::move(camera), doubles(turn * vectorOf(pose.forward)));
+    camera.eye = scale_ * doublesOf(place * vectorOf(pose.eye));
+    camera.up = doublesOf(turn * vectorOf(pose.up));
+    addCamera(std::move(camera), doublesOf(turn * vectorOf(pose.forward)));
   };
   if (collada_) {
     AssimpCamera pose;
