@@ -1,5 +1,6 @@
 """Radiance scenes and pictures: the Cornell box is that of its OBJ, and pictures are read by the format's rules."""
 
+import json
 import math
 import re
 import unittest
@@ -7,6 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
+from cie_171 import opposite
 from cli_runner import DATA, SMALL, CliTest
 from exr_file import ExrFile
 
@@ -78,6 +80,33 @@ class Radiance(CliTest):
         coarse = self.report("info", "a.rad", "--curve-tolerance", ".1")["scene"]
         np.testing.assert_allclose(coarse["emitted_power_W"], power, rtol=1e-9)
         self.refuse("info", "a.rad", "--curve-tolerance", "0", words=["--curve-tolerance", "1e-05"])
+
+    def test_holes_are_seams(self):
+        """A small plate a metre under a square of 10 m sees what is above through a hole of 2 m."""
+        self.write("a.rad", "void plastic grey 0 0 5 .5 .5 .5 0 0\n"
+                   "grey polygon plate 0 0 12  -.005 -.005 0  .005 -.005 0  .005 .005 0  -.005 .005 0\n"
+                   "grey polygon square 0 0 30  -5 -5 1  5 -5 1  5 5 1  -5 5 1  -5 -5 1\n"
+                   "  -1 -1 1  -1 1 1  1 1 1  1 -1 1  -1 -1 1\n")
+        self.run_program("factors", "a.rad", "--faces-as-patches", "--one-sided", "plate", "--tolerance", "1e-6",
+                         "--between", "surfaces", "-o", "f.json")
+        found = json.loads((self.folder / "f.json").read_text())
+        factor = found["form_factors"][found["names"].index("plate/grey")][found["names"].index("square/grey")]
+        # From a point; the plate is 1e-2 of the distance wide, which counts squared.
+        expected = opposite(-5, 5, -5, 5, 1) - opposite(-1, 1, -1, 1, 1)
+        self.assertAlmostEqual(factor, expected, delta=1e-4)
+
+    def test_a_can_is_closed(self):
+        self.write("a.rad", "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light bulb 0 0 3 1 1 1\n"
+                   "grey tube can 0 0 7  1 1 1  2 3 4  .7\n"
+                   "grey ring can.1 0 0 8  1 1 1  1 2 3  0 .7\n"
+                   "grey ring can.2 0 0 8  2 3 4  -1 -2 -3  0 .7\n"
+                   "bulb sphere lamp 0 0 4  1.5 2 2.5  .1\n")
+        report = self.report("solve", "a.rad", "--one-sided", "can", "--patches", 200, "--curve-tolerance", ".05",
+                             "-o", "a.h5")
+        power = 4 * math.pi * .01 * math.pi
+        np.testing.assert_allclose(report["solution"]["emitted_W"], power, rtol=1e-6)
+        np.testing.assert_allclose(report["solution"]["absorbed_W"], power, rtol=1e-4)  # the tolerance of the matrix
+        np.testing.assert_allclose(report["solution"]["to_sky_W"], 0, atol=1e-5 * power)
 
     def test_pictures_are_radiance(self):
         camera = "eye=.5,.5,.9;target=.5,.5,0;fov=90"
