@@ -69,6 +69,21 @@ Scene readByExtension(const std::string& path, const SceneOptions& options) {
       path, extension.empty() ? "a file without an extension" : extension, sceneExtensions()));
 }
 
+/// Where a light stands and ends; what it sends has its own unit.
+void convertToMetres(LightKind& kind, double factor) {
+  std::visit(
+      [factor](auto& light) {
+        if constexpr (requires { light.at; }) light.at *= factor;
+        if constexpr (requires { light.range; }) light.range *= factor;
+        if constexpr (requires { *light.aim; }) {
+          if (light.aim) *light.aim *= factor;
+        } else if constexpr (requires { light.aim; }) {
+          light.aim *= factor;
+        }
+      },
+      kind);
+}
+
 void convertToMetres(Scene& scene, const std::string& unit) {
   if (!unit.empty()) scene.unit = unit;
   const double factor = metresPer(scene.unit);
@@ -78,6 +93,7 @@ void convertToMetres(Scene& scene, const std::string& unit) {
     camera.eye *= factor;
     camera.target *= factor;
   }
+  for (Light& light : scene.lights) convertToMetres(light.kind, factor);
 }
 
 void noteTextures(Scene& scene) {

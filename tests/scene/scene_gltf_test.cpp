@@ -130,6 +130,16 @@ TEST_F(SceneGltf, RefusesImpossibleMaterialsByName) {
   EXPECT_CONTAINS(errorOf(d), "material dark: emission");
 }
 
+TEST_F(SceneGltf, LightOfCubesOfImagesIsLeftOut) {
+  Document d = triangle();
+  d.json["extensionsUsed"] = {"EXT_lights_image_based"};
+  d.json["extensionsRequired"] = {"EXT_lights_image_based"};
+  EXPECT_NOTE(load(d).notes,
+              "light of cubes of images is left out (image_sky='SKY.hdr' takes a plain image): "
+              "EXT_lights_image_based",
+              Severity::warning);
+}
+
 TEST_F(SceneGltf, RefusesUnknownRequiredExtensions) {
   Document d = triangle();
   d.json["extensionsUsed"] = {"EXT_other_geometry"};
@@ -324,12 +334,13 @@ Document withLights(Document d, const Json& lights) {
 }
 
 TEST_F(SceneGltf, ReadsLights) {
-  const Scene scene = load(withLights(
+  const Document document = withLights(
       triangle(), {{{"type", "point"}, {"intensity", 683}, {"color", {1, .5, 0}}, {"range", 7}},
                    {{"type", "spot"},
                     {"intensity", 1366},
                     {"spot", {{"innerConeAngle", 0}, {"outerConeAngle", std::numbers::pi / 6}}}},
-                   {{"type", "directional"}, {"intensity", 68300}}}));
+                   {{"type", "directional"}, {"intensity", 68300}}});
+  const Scene scene = load(document);
   ASSERT_EQ(scene.lights.size(), 4u);  // the sky
   const Light& point = scene.lights[1];
   EXPECT_EQ(point.name, "light0");
@@ -346,6 +357,16 @@ TEST_F(SceneGltf, ReadsLights) {
   EXPECT_EQ(sun.strength, std::vector<double>(3, 100.0));
   EXPECT_NEAR(glm::distance(std::get<Sun>(sun.kind).toward, Vec3(-1, 0, 0)), 0, 1e-14);
   EXPECT_NOTE(scene.notes, "taken at 683 lm/W: light0, light1, light2", Severity::info);
+
+  // In another unit they move with the scene, and are as bright.
+  SceneOptions options;
+  options.unit = "cm";
+  const Scene small = load(document, options);
+  EXPECT_EQ(small.lights[1].strength, point.strength);
+  EXPECT_EQ(std::get<PointLight>(small.lights[1].kind),
+            (PointLight{0.01 * Vec3(1, 2, 0), 0.01 * 7}));
+  EXPECT_EQ(std::get<SpotLight>(small.lights[2].kind).aim, 0.01 * cone.aim);
+  EXPECT_EQ(std::get<SpotLight>(small.lights[2].kind).outer, cone.outer);
 }
 
 /// 400 cd to C0, 300 to C90, 200 to C180, 100 to C270.

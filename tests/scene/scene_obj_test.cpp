@@ -200,7 +200,7 @@ TEST_F(SceneObj, RefusesFilesThatAreNoScene) {
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(path("folder.obj")); }), "is a folder");
   const std::string blend = write("scene.blend", "BLENDER");
   EXPECT_CONTAINS(inputErrorOf([&] { loadScene(blend); }),
-                  "export it as one of .obj, .gltf, .glb, .stl");
+                  "export it as one of .obj, .gltf, .glb, .rad, .stl");
   EXPECT_CONTAINS(errorOf(""), "is empty");
   EXPECT_CONTAINS(errorOf("# nothing\n"), "no faces");
   EXPECT_CONTAINS(errorOf(kSquare + "l 1 2\n"), "no faces");

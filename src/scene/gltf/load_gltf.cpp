@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "base/finite.h"
+#include "radiosity/spelling.h"
 #include "scene/gltf/gltf_materials.h"
 #include "scene/gltf/gltf_nodes.h"
 #include "scene/gltf/gltf_photometry.h"
@@ -348,6 +349,13 @@ void Reader::noteUnused() {
   }
   for (const std::string& extension : model_.extensionsUsed) {
     if (isSupportedGltfExtension(extension) || isNoted(extension)) continue;
+    if (extension == "EXT_lights_image_based") {
+      // The six sides of a cube in several blurs, and the irradiance of these.
+      ignored_.add(fmt::format("light of cubes of images is left out ({} takes a plain image)",
+                               spelled("image_sky", "SKY.hdr")),
+                   extension, Severity::warning);
+      continue;
+    }
     const auto& required = model_.extensionsRequired;
     if (std::find(required.begin(), required.end(), extension) != required.end()) {
       ignored_.add("required extensions that are not read; materials may look different", extension,
