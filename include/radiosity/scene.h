@@ -178,9 +178,9 @@ struct SceneOptions : SceneOverrides {
   VertexColours vertex_colours = VertexColours::unused;
   bool textures = true;    ///< false: the material's factor alone
   double max_image = 100;  ///< largest texture, in millions of pixels; above 0
-  /// Of the spheres, cylinders, cones and rings of a .rad: how far the facets that stand for one may
-  /// lie off it, over its radius.
-  double curve_tolerance = 0.005;
+  /// Of the spheres, cylinders, cones and rings of a .rad: how far the facets that stand for one
+  /// may lie off it, over its radius.
+  double curve_deviation = 0.005;
   /// Throws InputError naming the option and its range.
   void validate() const;
 
@@ -221,12 +221,12 @@ struct SceneOptions : SceneOverrides {
                   "takes up to 30 MB while it is read)",
           .in_key = InKey::never},
          o.max_image, {.to = 2000, .above = 0});
-    list({.name = "curve_tolerance",
+    list({.name = "curve_deviation",
           .value = "SHARE",
           .help = "How far facets may lie off the spheres, cylinders, cones and rings of a .rad, "
                   "over their radius",
           .in_key = InKey::if_changed},
-         o.curve_tolerance, {.from = 1e-5, .to = 0.2});
+         o.curve_deviation, {.from = 1e-5, .to = 0.2});
   }
 };
 
@@ -238,11 +238,11 @@ std::string sceneExtensions();
 /// CalculiX and Abaqus; .ply, .off; VTK's .vtk, .vtp, .vtu; by Assimp .dae, .fbx, .3ds, .ifc, .dxf,
 /// as files of CAD and modellers. Named groups (solids, physical groups, element sets, arrays of
 /// cells) are surfaces. Face f of the scene is face f of the file, but one may become several
-/// (View3D's with subsurfaces, triangles of a strip, curved ones of a .rad). Lines and points are left out, and volumes if
-/// there are faces; without faces the skin of the volumes is the scene. An OBJ has no cameras of
-/// its own; a comment line `# camera eye=x,y,z target=x,y,z up=x,y,z fov=DEGREES` (file units,
-/// vertical field of view) is read as one. Errors: InputError, one line with file, element and
-/// cure; RunError if the scene does not fit into memory.
+/// (View3D's with subsurfaces, triangles of a strip, curved ones of a .rad). Lines and points are
+/// left out, and volumes if there are faces; without faces the skin of the volumes is the scene. An
+/// OBJ has no cameras of its own; a comment line `# camera eye=x,y,z target=x,y,z up=x,y,z
+/// fov=DEGREES` (file units, vertical field of view) is read as one. Errors: InputError, one line
+/// with file, element and cure; RunError if the scene does not fit into memory.
 Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// Changes a scene already in memory (one that came back from a results file). NAME is a surface,

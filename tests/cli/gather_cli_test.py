@@ -129,7 +129,7 @@ f 5 6 7 8
         self.refuse("gather", "box.obj", *SMALL, "-o", "g.png", "--exposure", "bright",
                     words=["--exposure", "bright"])
         self.refuse("gather", "box.obj", *SMALL, "-o", "g.mtx",
-                    words=["g.mtx", ".png, .exr, .glb, .h5"])
+                    words=["g.mtx", ".png, .exr, .hdr, .glb, .h5"])
 
     def test_exit_codes_tell_failure_from_misuse(self):
         # White walls and a grey lamp: far from converged after 100 passes.

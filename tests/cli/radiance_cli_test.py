@@ -77,9 +77,9 @@ class Radiance(CliTest):
         self.write("a.rad", "void light l 0 0 3 7 7 7\nl sphere s 0 0 4 1 2 3 .5\n")
         power = self.report("info", "a.rad")["scene"]["emitted_power_W"]
         np.testing.assert_allclose(power, 4 * math.pi * .25 * math.pi * 7, rtol=1e-9)
-        coarse = self.report("info", "a.rad", "--curve-tolerance", ".1")["scene"]
+        coarse = self.report("info", "a.rad", "--curve-deviation", ".1")["scene"]
         np.testing.assert_allclose(coarse["emitted_power_W"], power, rtol=1e-9)
-        self.refuse("info", "a.rad", "--curve-tolerance", "0", words=["--curve-tolerance", "1e-05"])
+        self.refuse("info", "a.rad", "--curve-deviation", "0", words=["--curve-deviation", "1e-05"])
 
     def test_holes_are_seams(self):
         """A small plate a metre under a square of 10 m sees what is above through a hole of 2 m."""
@@ -101,7 +101,7 @@ class Radiance(CliTest):
                    "grey ring can.1 0 0 8  1 1 1  1 2 3  0 .7\n"
                    "grey ring can.2 0 0 8  2 3 4  -1 -2 -3  0 .7\n"
                    "bulb sphere lamp 0 0 4  1.5 2 2.5  .1\n")
-        report = self.report("solve", "a.rad", "--one-sided", "can", "--patches", 200, "--curve-tolerance", ".05",
+        report = self.report("solve", "a.rad", "--one-sided", "can", "--patches", 200, "--curve-deviation", ".05",
                              "-o", "a.h5")
         power = 4 * math.pi * .01 * math.pi
         np.testing.assert_allclose(report["solution"]["emitted_W"], power, rtol=1e-6)

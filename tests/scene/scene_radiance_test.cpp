@@ -213,7 +213,7 @@ TEST_F(SceneRadiance, SourcesAreSunsAndSkies) {
 
 TEST_F(SceneRadiance, CurvedSurfacesAreReported) {
   SceneOptions options;
-  options.curve_tolerance = 0.05;
+  options.curve_deviation = 0.05;
   const Scene coarse = load(kGreyPlastic + "grey cylinder a 0 0 7 0 0 0 0 0 1 .5\n", options);
   EXPECT_EQ(coarse.faceCount(), 12u);  // corners 4.9% outside
   const Scene scene = load(kGreyPlastic + "grey cylinder a 0 0 7 0 0 0 0 0 1 .5\n");

@@ -102,7 +102,7 @@ class RadianceScene {
 
   Facets facetsOf(const RadiancePrimitive& surface) const {
     const Vec3 first = place(surface, 0);
-    const double tolerance = options_.curve_tolerance;
+    const double tolerance = options_.curve_deviation;
     if (surface.is("sphere") || surface.is("bubble")) {
       return sphereFacets(first, radius(surface, 3, false), tolerance);
     }
@@ -152,7 +152,7 @@ class RadianceScene {
          fmt::format("{} curved surface{} became {} flat facets, up to {:.2g}% of a radius off ({} "
                      "changes that); {}",
                      curved_, curved_ == 1 ? "" : "s", facets_, 100 * off_,
-                     spelled("curve_tolerance"), areas)});
+                     spelled("curve_deviation"), areas)});
   }
 
   RadianceReader reader_;
