@@ -57,7 +57,7 @@ struct HeatHandle {
   std::shared_ptr<const FactorsHandle> factors;
   HeatSolution solution;
   std::optional<HeatOptions> options;  ///< none: it was read
-  std::vector<Note> notes;  ///< on the conditions
+  std::vector<Note> notes;             ///< on the conditions
   Key key;
 };
 

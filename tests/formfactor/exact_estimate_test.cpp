@@ -195,7 +195,8 @@ TEST(Auto, CutsRowsWhereRaysToTheirToleranceTakeFarLonger) {
   const PatchMesh cluttered = meshNamed("furnished-room", 5000);
   Progress silent;
   FormFactorOptions options;
-  options.tolerance = 1e-2;  // of each pair with rays, of all light with cuts: some 40 times the rays
+  options.tolerance =
+      1e-2;  // of each pair with rays, of all light with cuts: some 40 times the rays
   EXPECT_EQ(planFormFactors(cluttered, options, silent).method, FormFactorMethod::cut);
 }
 
