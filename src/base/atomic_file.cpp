@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <random>
 #include <set>
@@ -170,6 +171,15 @@ std::unique_lock<std::mutex> discardTemporaries() {
   for (const std::string& name : files().temporaries) fs::remove(name, ignored);
   files().temporaries.clear();
   return lock;
+}
+
+void writeWholeFile(const std::string& path, std::string_view text) {
+  AtomicFile file(path);
+  std::ofstream stream(file.temporary(), std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) throw RunError(fmt::format("{}: cannot be written; is the disk full?", path));
+  file.commit();
 }
 
 }  // namespace radiosity

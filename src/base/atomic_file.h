@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 namespace radiosity {
 
@@ -35,6 +36,9 @@ class AtomicFile {
   std::string temporary_;
   int lock_ = -1;  ///< holds a lock on the temporary file as long as this process lives
 };
+
+/// Writes a file whole. Errors: as AtomicFile; RunError if it cannot be written.
+void writeWholeFile(const std::string& path, std::string_view text);
 
 /// The number of files that this process has committed.
 std::size_t committedFiles();

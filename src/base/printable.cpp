@@ -69,4 +69,27 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+std::string markupText(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? '_' : c;
+    }
+  }
+  return out;
+}
+
 }  // namespace radiosity

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/printable.h"
 #include "radiosity/base.h"
 
 namespace radiosity::cli {
@@ -25,17 +26,6 @@ bool holds(const fs::path& path, const char* text) {
   std::ifstream file(path, std::ios::binary);
   const std::string all{std::istreambuf_iterator<char>(file), {}};
   return all.find(text) != std::string::npos;
-}
-
-std::string markup(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    out += c == '&'   ? std::string("&amp;")
-           : c == '<' ? std::string("&lt;")
-           : c == '"' ? std::string("&quot;")
-                      : std::string(1, c);
-  }
-  return out;
 }
 
 /// A file name as a part of an address (RFC 3986).
@@ -121,15 +111,10 @@ std::size_t writeGalleryIndex(const std::string& folder) {
     if (fs::exists(fs::path(folder) / (name + ".png"))) {
       text += fmt::format("<img src=\"{}\" alt=\"\">", address(name + ".png"));
     }
-    text += fmt::format("<span>{}</span></a>\n", markup(name));
+    text += fmt::format("<span>{}</span></a>\n", markupText(name));
   }
   text += "</main>\n</body>\n</html>\n";
-  AtomicFile file((fs::path(folder) / kIndex).string());
-  std::ofstream out(file.temporary(), std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw RunError((fs::path(folder) / kIndex).string() + ": cannot be written");
-  file.commit();
+  writeWholeFile((fs::path(folder) / kIndex).string(), text);
   return pages.size();
 }
 

@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "base/atomic_file.h"
 #include "cli/help_formatter.h"
-#include "radiosity/base.h"
 #include "radiosity/version.h"
 
 namespace radiosity::cli {
@@ -84,13 +82,7 @@ std::string manualPage(const CLI::App& app, const std::string& name) {
 void writeText(const std::filesystem::path& path, const std::string& text) {
   std::error_code ignored;  // the file says what is wrong
   std::filesystem::create_directories(path.parent_path(), ignored);
-  AtomicFile file(path);
-  std::ofstream stream(file.temporary());
-  stream << text;
-  stream.close();
-  if (!stream)
-    throw RunError(fmt::format("{}: cannot be written; is the disk full?", path.string()));
-  file.commit();
+  writeWholeFile(path, text);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -263,13 +262,7 @@ void Report::fact(const std::string& key, const std::vector<std::string>& values
 void Report::exitCode(int code) { (*root_)["exit_code"] = code; }
 
 void Report::write(const std::string& path) const {
-  AtomicFile file(path);
-  std::ofstream stream(file.temporary());
-  stream << root_->dump(2, ' ', false, json::error_handler_t::replace) << "\n";
-  stream.close();
-  if (!stream)
-    throw RunError(fmt::format("{}: the report cannot be written; is the disk full?", path));
-  file.commit();
+  writeWholeFile(path, root_->dump(2, ' ', false, json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace radiosity::cli

@@ -1,16 +1,17 @@
 #include "page/elements.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <string>
 
+#include "base/made.h"
 #include "elements/direct_bands.h"
 #include "page/header.h"
 #include "page/lamps.h"
 #include "page/surfaces.h"
 #include "results/lit_triangles.h"
+#include "results/lit_vertices.h"
 
 namespace radiosity::page {
 
@@ -68,48 +69,18 @@ PatchMaterials bandsOfLamps(const Scene& scene, const PatchMesh& mesh,
   return split;
 }
 
-/// The vertices of the triangles: corners at one point of one surface's light and material are one.
-class ElementVertices {
- public:
-  explicit ElementVertices(const PatchMesh& mesh, const PatchMaterials& materials)
-      : mesh_(mesh), materials_(materials) {}
-
-  /// The corner's vertex, and whether it is new: then it is the last.
-  std::pair<std::uint32_t, bool> of(const LitCorner& corner, Index patch) {
-    const Vec3& h = corner.radiosity;
-    const std::array<float, 3> value = {float(h.x), float(h.y), float(h.z)};
-    std::vector<std::uint32_t>& known = at_point_[corner.point];
-    for (const std::uint32_t v : known) {
-      if (irradiance[v] == value && alike(patch_of[v], patch)) return {v, false};
-    }
-    const auto added = std::uint32_t(patch_of.size());
-    known.push_back(added);
-    patch_of.push_back(patch);
-    irradiance.push_back(value);
-    return {added, true};
-  }
-
-  std::vector<std::uint32_t> patch_of;
-  std::vector<std::array<float, 3>> irradiance;  ///< W/m^2
-
- private:
-  /// Whether both patches turn irradiance into the same radiosity, whatever a viewer changes.
-  bool alike(Index a, Index b) const {
-    if (a == b) return true;
-    if (mesh_.surface[a] != mesh_.surface[b]) return false;
-    const auto bands = std::size_t(materials_.bands);
-    const auto same = [&](const std::vector<double>& values) {
-      return std::equal(values.begin() + std::ptrdiff_t(a * bands),
-                        values.begin() + std::ptrdiff_t((a + 1) * bands),
-                        values.begin() + std::ptrdiff_t(b * bands));
-    };
-    return same(materials_.emission) && same(materials_.reflectance);
-  }
-
-  const PatchMesh& mesh_;
-  const PatchMaterials& materials_;
-  std::map<Index, std::vector<std::uint32_t>> at_point_;
-};
+/// Whether two patches turn irradiance into the same radiosity, whatever a viewer changes.
+bool alike(const PatchMesh& mesh, const PatchMaterials& materials, Index a, Index b) {
+  if (a == b) return true;
+  if (mesh.surface[a] != mesh.surface[b]) return false;
+  const auto bands = std::size_t(materials.bands);
+  const auto same = [&](const std::vector<double>& values) {
+    return std::equal(values.begin() + std::ptrdiff_t(a * bands),
+                      values.begin() + std::ptrdiff_t((a + 1) * bands),
+                      values.begin() + std::ptrdiff_t(b * bands));
+  };
+  return same(materials.emission) && same(materials.reflectance);
+}
 
 /// Irradiance in place of radiosity.
 SurfaceLight irradianceOf(const SurfaceLight& light, const Solution& solution) {
@@ -121,94 +92,115 @@ SurfaceLight irradianceOf(const SurfaceLight& light, const Solution& solution) {
   return shown;
 }
 
-constexpr double kWhole = 65535;
+/// What each lamp gives directly to vertices: its share of their irradiance.
+class LampShares {
+ public:
+  /// `elements`: none: there are no lamps.
+  LampShares(Pipeline& pipeline, const Elements* elements, Progress& progress)
+      : bands_(std::size_t(pipeline.materials().bands)) {
+    if (elements == nullptr) return;
+    const PatchMesh& mesh = pipeline.mesh().mesh;
+    const PatchMaterials& materials = pipeline.materials();
+    lamps_ = lampsOf(pipeline.scene(), mesh, materials);
+    if (lamps_.empty()) return;
+    field_ = directBands(mesh, bandsOfLamps(pipeline.scene(), mesh, materials, lamps_),
+                         pipeline.options().elements, elements->direct, progress);
+    if (field_.elements.empty()) lamps_.clear();
+    lookup_.emplace(mesh, elements->roots);
+    shares_.resize(lamps_.size());
+  }
 
-/// The shares of lamps in a vertex's irradiance, `lamps` times three, in 16 bits.
-std::vector<std::uint16_t> sharesOf(std::span<const double> direct, std::size_t lamps, int bands,
-                                    const std::array<float, 3>& irradiance) {
-  std::vector<std::uint16_t> codes(3 * lamps);
-  for (std::size_t b = 0; b < 3; ++b) {
-    const auto at = [&](std::size_t k) {
-      return std::max(0.0, direct[k * std::size_t(bands) + (bands == 1 ? 0 : b)]);
-    };
-    double whole = irradiance[b];
-    double sum = 0;
-    for (std::size_t k = 0; k < lamps; ++k) sum += at(k);
-    whole = std::max(whole, sum);
-    if (!(whole > 0)) continue;
-    for (std::size_t k = 0; k < lamps; ++k) {
-      codes[3 * k + b] = std::uint16_t(std::floor(kWhole * at(k) / whole));
+  void addVertex(Index patch, const Vec3& position, const LitVertices::Triple& irradiance) {
+    if (lamps_.empty()) return;
+    direct_.assign(lamps_.size() * bands_, 0.0);
+    const ElementLookup& lookup = made(lookup_);
+    const std::size_t root = lookup.rootAt(patch, position);
+    lookup.add(field_, root, lookup.place(root, position), direct_);
+    for (double& value : direct_) value = std::max(0.0, value);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t band = bands_ == 1 ? 0 : c;
+      double sum = 0;
+      for (std::size_t k = 0; k < lamps_.size(); ++k) sum += direct_[k * bands_ + band];
+      const double whole = std::max(double(irradiance[c]), sum);
+      for (std::size_t k = 0; k < lamps_.size(); ++k) {
+        const double code = whole > 0 ? kWhole * direct_[k * bands_ + band] / whole : 0.0;
+        shares_[k].push_back(std::uint16_t(std::floor(code)));
+      }
     }
   }
-  return codes;
+
+  void addTo(Container& container) const {
+    Container::Json described = Container::Json::array();
+    for (std::size_t k = 0; k < lamps_.size(); ++k) {
+      const bool is_light = lamps_[k].light != kNone;
+      described.push_back(
+          {{is_light ? "light" : "material", is_light ? lamps_[k].number : lamps_[k].material}});
+      container.add("element_share_" + std::to_string(k), shares_[k]);
+    }
+    container.header()["element_lamps"] = described;
+  }
+
+ private:
+  static constexpr double kWhole = 65535;
+
+  std::size_t bands_;
+  std::vector<ElementLamp> lamps_;
+  ElementField field_;
+  std::optional<ElementLookup> lookup_;
+  std::vector<double> direct_;                      ///< at a vertex, the bands of each lamp
+  std::vector<std::vector<std::uint16_t>> shares_;  ///< of each lamp, three a vertex
+};
+
+/// The lit mesh. Corners at one point of one surface's light and material are one vertex.
+struct LitElements {
+  std::vector<Vec3> positions;
+  std::vector<float> irradiance;  ///< three a vertex, W/m^2
+  std::vector<Index> patches;
+  std::vector<Index> triangles;
+};
+
+LitElements litElements(Pipeline& pipeline, const SurfaceLight& light, double crease,
+                        LampShares& shares) {
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const SurfaceLight shown = irradianceOf(light, pipeline.solution());
+  const std::vector<double> corners = cornerValues(mesh, shown.patches, 3, crease);
+  LitTriangles lit(mesh, shown.patches, corners, &shown);
+  LitVertices vertices;
+  LitElements found;
+  std::vector<LitCorner> triple;
+  for (Index i = 0; i < mesh.size(); ++i) {
+    triple.clear();
+    lit.append(i, triple);
+    const auto may_be = [&](Index vertex) {
+      return alike(mesh, pipeline.materials(), found.patches[vertex], i);
+    };
+    for (const LitCorner& corner : triple) {
+      const auto [vertex, is_new] = vertices.of(corner, may_be);
+      found.triangles.push_back(vertex);
+      if (!is_new) continue;
+      const LitVertices::Triple& value = vertices.radiosity().back();
+      found.patches.push_back(i);
+      found.positions.push_back(lit.position(corner.point));
+      found.irradiance.insert(found.irradiance.end(), value.begin(), value.end());
+      shares.addVertex(i, found.positions.back(), value);
+    }
+  }
+  return found;
 }
 
 }  // namespace
 
 std::size_t addElements(Pipeline& pipeline, const SurfaceLight& light, double crease,
                         const Vec3& origin, Progress& progress, Container& container) {
-  const PatchMesh& mesh = pipeline.mesh().mesh;
-  const PatchMaterials& materials = pipeline.materials();
-  std::vector<Vec3> positions;
-  std::vector<float> irradiance;
-  std::vector<std::uint32_t> triangles;
-  ElementVertices vertices(mesh, materials);
-  std::vector<ElementLamp> lamps;
-  std::vector<std::vector<std::uint16_t>> shares;
-  if (light.elements) {
-    const Elements& elements = *light.elements;
-    lamps = lampsOf(pipeline.scene(), mesh, materials);
-    ElementField field;
-    if (!lamps.empty()) {
-      field = directBands(mesh, bandsOfLamps(pipeline.scene(), mesh, materials, lamps),
-                          pipeline.options().elements, elements.direct, progress);
-    }
-    if (field.elements.empty()) lamps.clear();
-    shares.resize(lamps.size());
-    const ElementLookup lookup(mesh, elements.roots);
-    const SurfaceLight shown = irradianceOf(light, pipeline.solution());
-    const std::vector<double> corners = cornerValues(mesh, shown.patches, 3, crease);
-    LitTriangles lit(mesh, shown.patches, corners, &shown);
-    std::vector<LitCorner> triple;
-    std::vector<double> direct(lamps.size() * std::size_t(materials.bands));
-    for (Index i = 0; i < mesh.size(); ++i) {
-      triple.clear();
-      lit.append(i, triple);
-      for (const LitCorner& corner : triple) {
-        const auto [vertex, is_new] = vertices.of(corner, i);
-        triangles.push_back(vertex);
-        if (!is_new) continue;
-        positions.push_back(lit.position(corner.point));
-        std::ranges::fill(direct, 0.0);
-        if (!lamps.empty()) {
-          const std::size_t root = lookup.rootAt(i, positions.back());
-          lookup.add(field, root, lookup.place(root, positions.back()), direct);
-        }
-        const auto codes =
-            sharesOf(direct, lamps.size(), materials.bands, vertices.irradiance.back());
-        for (std::size_t k = 0; k < lamps.size(); ++k) {
-          shares[k].insert(shares[k].end(), codes.begin() + std::ptrdiff_t(3 * k),
-                           codes.begin() + std::ptrdiff_t(3 * k + 3));
-        }
-      }
-    }
-    for (const auto& value : vertices.irradiance) {
-      irradiance.insert(irradiance.end(), value.begin(), value.end());
-    }
-  }
-  Container::Json described = Container::Json::array();
-  for (std::size_t k = 0; k < lamps.size(); ++k) {
-    const bool is_light = lamps[k].light != kNone;
-    described.push_back(
-        {{is_light ? "light" : "material", is_light ? lamps[k].number : lamps[k].material}});
-    container.add("element_share_" + std::to_string(k), shares[k]);
-  }
-  container.header()["element_lamps"] = described;
-  container.add("element_position", packed(positions, origin));
-  container.add("element_triangle", triangles);
-  container.add("element_irradiance", irradiance);
-  container.add("element_patch", vertices.patch_of);
-  return triangles.size() / 3;
+  LampShares shares(pipeline, light.elements.get(), progress);
+  LitElements lit;
+  if (light.elements) lit = litElements(pipeline, light, crease, shares);
+  shares.addTo(container);
+  container.add("element_position", packed(lit.positions, origin));
+  container.add("element_triangle", lit.triangles);
+  container.add("element_irradiance", lit.irradiance);
+  container.add("element_patch", lit.patches);
+  return lit.triangles.size() / 3;
 }
 
 }  // namespace radiosity::page

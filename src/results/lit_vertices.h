@@ -16,18 +16,23 @@ class LitVertices {
  public:
   using Triple = std::array<float, 3>;
 
-  /// The corner's vertex, and whether it is new: then it is the last.
-  std::pair<Index, bool> of(const LitCorner& corner) {
+  /// The corner's vertex, and whether it is new: then it is the last. `may_be(k)`: whether the
+  /// corner may be vertex k, of the same point and radiosity.
+  template <class MayBe>
+  std::pair<Index, bool> of(const LitCorner& corner, const MayBe& may_be) {
     const Vec3& b = corner.radiosity;
     const Triple value = {float(b.x), float(b.y), float(b.z)};
     std::vector<Index>& known = at_point_[corner.point];
     for (const Index k : known) {
-      if (radiosity_[k] == value) return {k, false};
+      if (radiosity_[k] == value && may_be(k)) return {k, false};
     }
     const auto added = Index(radiosity_.size());
     known.push_back(added);
     radiosity_.push_back(value);
     return {added, true};
+  }
+  std::pair<Index, bool> of(const LitCorner& corner) {
+    return of(corner, [](Index) { return true; });
   }
 
   const std::vector<Triple>& radiosity() const { return radiosity_; }  ///< W/m^2

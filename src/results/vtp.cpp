@@ -9,37 +9,13 @@
 #include <type_traits>
 
 #include "base/base64.h"
+#include "base/printable.h"
 #include "radiosity/vtk.h"
 #include "results/checked_file.h"
 
 namespace radiosity {
 
 namespace {
-
-/// Writes markup characters of `text` as entities. Control characters, which XML cannot represent,
-/// become '_'.
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += static_cast<unsigned char>(c) < 0x20 ? '_' : c;
-    }
-  }
-  return out;
-}
 
 template <class Value>
 constexpr std::string_view typeName() {
@@ -59,12 +35,12 @@ class VtpFile {
   void array(const std::string& name, const std::vector<Value>& values, int components = 1,
              const std::string& unit = "") {
     write(fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="binary">)",
-                      typeName<Value>(), escaped(name), components));
+                      typeName<Value>(), markupText(name), components));
     writeBytes(values.data(), values.size() * sizeof(Value));
     if (!unit.empty()) {
       write(fmt::format(
           R"(<InformationKey name="UNITS_LABEL" location="vtkDataArray">{}</InformationKey>)",
-          escaped(unit)));
+          markupText(unit)));
     }
     write("</DataArray>\n");
   }
@@ -77,7 +53,7 @@ class VtpFile {
       text += '\0';
     }
     write(fmt::format(R"(<Array type="String" Name="{}" NumberOfTuples="{}" format="binary">)",
-                      escaped(name), values.size()));
+                      markupText(name), values.size()));
     writeBytes(text.data(), text.size());
     write("</Array>\n");
   }

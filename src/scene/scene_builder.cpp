@@ -21,6 +21,14 @@ std::string UniqueNames::make(const std::string& wanted) {
   }
 }
 
+UniqueNames lightNames(std::string_view free) {
+  UniqueNames names;
+  for (const Light& kind : lightKinds()) {
+    if (kind.name != free) names.make(kind.name);
+  }
+  return names;
+}
+
 void FeatureNotes::add(const std::string& feature, const std::string& name, Severity severity,
                        std::size_t shown) {
   const auto [place, is_new] = entry_of_.try_emplace(feature, entries_.size());

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@ class UniqueNames {
   std::set<std::string> taken_;
   std::map<std::string, std::size_t> last_number_;  ///< by wanted name
 };
+
+/// Of lights: the words of their kinds, which options take for a kind, are taken; but for `free`.
+UniqueNames lightNames(std::string_view free = {});
 
 /// Collects features that are not used and makes one note for each feature.
 class FeatureNotes {

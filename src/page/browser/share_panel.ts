@@ -1,6 +1,7 @@
 // The panel that gives the page away: a link, a picture, the command of the program that draws the same.
 import { Fragment } from "./fragment";
 import type { RelightPanel } from "./relight_panel";
+import { pixelRatio } from "./stage";
 import { copy, element, on, quoted, select } from "./ui";
 import type { Show, Viewer } from "./viewer";
 
@@ -119,10 +120,9 @@ export function setUpShare(viewer: Viewer, relight: RelightPanel): Fragment {
   on("app", "change", say);
   window.addEventListener("resize", say);
   say();
-  const ratio = () => Math.min(window.devicePixelRatio, 2);
   on("copy-link", "click", () => void copy(fragment.link(), element("copy-link")));
-  on("save-picture", "click", () => save(viewer, ratio(), `${title}.png`));
-  on("save-poster", "click", () => save(viewer, POSTER * ratio(), `${title}-${POSTER}x.png`));
+  on("save-picture", "click", () => save(viewer, pixelRatio(), `${title}.png`));
+  on("save-poster", "click", () => save(viewer, POSTER * pixelRatio(), `${title}-${POSTER}x.png`));
   element("full-screen").hidden = !document.fullscreenEnabled;
   on("full-screen", "click", () => void element("app").requestFullscreen());
   on("copy-command", "click", () => void copy(element("command").textContent ?? "", element("copy-command")));

@@ -11,6 +11,8 @@ import type { Uniforms } from "./shading";
 
 /** A movement ends after this time without motion; then the picture is drawn at full resolution. */
 export const SETTLED_MS = 300;
+/** Pixels of the screen a pixel of the page, as far as pictures have them. */
+export const pixelRatio = (): number => Math.min(window.devicePixelRatio, 2);
 const MARK_PIXELS = 3;
 const RIM_PIXELS = 6; // behind the mark, so that it shows on any colour
 
@@ -81,7 +83,7 @@ export class Stage {
 
   /** Of the picture, in pixels of the screen. */
   size(): [number, number] {
-    const ratio = Math.min(window.devicePixelRatio, 2);
+    const ratio = pixelRatio();
     return [Math.floor(this.canvas.clientWidth * ratio), Math.floor(this.canvas.clientHeight * ratio)];
   }
 
@@ -152,7 +154,7 @@ export class Stage {
     this.drawNow(); // a resized canvas is empty until it is drawn
   }
 
-  private drawNow(scale = Math.min(window.devicePixelRatio, 2)): void {
+  private drawNow(scale = pixelRatio()): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.moving) this.canvas.removeAttribute("data-moving");
     if (!this.renderer) return;

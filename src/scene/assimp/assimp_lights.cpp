@@ -34,7 +34,6 @@ AssimpLights::AssimpLights(const std::vector<AssimpLight>& lights, std::string e
                            double scale, FeatureNotes& notes)
     : extension_(std::move(extension)), scale_(scale), notes_(notes) {
   for (const AssimpLight& light : lights) light_of_.emplace(light.node, &light);
-  for (const Light& kind : lightKinds()) names_.make(kind.name);
 }
 
 bool AssimpLights::isRead(const AssimpLight& given) const {

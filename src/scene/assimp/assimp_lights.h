@@ -35,7 +35,7 @@ class AssimpLights {
   double scale_;
   FeatureNotes& notes_;
   std::multimap<std::string, const AssimpLight*> light_of_;  ///< by node; not placed yet
-  UniqueNames names_;
+  UniqueNames names_ = lightNames();
   std::vector<Light> placed_;
 };
 

@@ -67,7 +67,7 @@ class Reader {
   SceneBuilder builder_;
   GltfMaterials materials_;
   UniqueNames object_names_;
-  UniqueNames light_names_;
+  UniqueNames light_names_ = lightNames();
   FeatureNotes ignored_;
   std::vector<bool> visited_;
   std::map<Index, std::size_t> faces_of_;  ///< by surface, so far
@@ -79,7 +79,6 @@ void Reader::read() {
     ignored_.add("one scene of the file is read",
                  fmt::format("number {}", std::max(model_.defaultScene, 0)), Severity::warning);
   }
-  for (const Light& kind : lightKinds()) light_names_.make(kind.name);
   visited_.assign(model_.nodes.size(), false);
   forEachGltfNode(file_, [this](int node, const Transform& transform, const std::string& what) {
     readNode(node, transform, what);

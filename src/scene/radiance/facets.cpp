@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "base/geometry/plane_frame.h"
+
 namespace radiosity {
 
 namespace {
@@ -22,8 +24,8 @@ std::array<Vec3, 2> across(const Vec3& axis) {
   } else if (std::abs(axis.y) < kAlong) {
     other = Vec3(0, 1, 0);
   }
-  const Vec3 u = glm::normalize(glm::cross(other, axis));
-  return {u, glm::cross(axis, u)};
+  const PlaneFrame frame = makeFrame(Vec3(0.0), axis, other);
+  return {frame.u, frame.v};
 }
 
 /// A circle as a polygon of its area. Sides are a multiple of four, so that both sides of its plane

@@ -78,15 +78,11 @@ class RadianceScene {
     }
   }
 
-  static Vec3 place(const RadiancePrimitive& surface, std::size_t first) {
-    return {surface.numbers[first], surface.numbers[first + 1], surface.numbers[first + 2]};
-  }
-
   void addPolygon(const RadiancePrimitive& surface, Index into) {
     std::vector<Index> corners;
     for (std::size_t k = 0; k < surface.numbers.size(); k += 3) {
       corners.push_back(Index(scene_.vertices.size()));
-      scene_.vertices.push_back(place(surface, k));
+      scene_.vertices.push_back(surface.three(k));
     }
     builder_.addFace(corners, {}, into, surface.line);
   }
@@ -101,12 +97,12 @@ class RadianceScene {
   }
 
   Facets facetsOf(const RadiancePrimitive& surface) const {
-    const Vec3 first = place(surface, 0);
+    const Vec3 first = surface.three(0);
     const double tolerance = options_.curve_deviation;
     if (surface.is("sphere") || surface.is("bubble")) {
       return sphereFacets(first, radius(surface, 3, false), tolerance);
     }
-    const Vec3 second = place(surface, 3);
+    const Vec3 second = surface.three(3);
     if (surface.is("ring")) {
       if (!(glm::length(second) > 0)) reader_.fail(surface, "has no direction; give one");
       const auto [inner, outer] = std::minmax({radius(surface, 6, true), radius(surface, 7, true)});

@@ -36,6 +36,10 @@ struct RadiancePrimitive {
   std::size_t line = 0;
 
   bool is(std::string_view word) const { return type->word == word; }
+  /// Three of the numbers: a place, a direction or a colour.
+  Vec3 three(std::size_t first) const {
+    return {numbers[first], numbers[first + 1], numbers[first + 2]};
+  }
   std::string text() const { return std::string(type->word) + " " + name; }
 };
 

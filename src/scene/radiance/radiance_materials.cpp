@@ -16,10 +16,6 @@ bool isOne(const RadiancePrimitive& primitive, std::initializer_list<const char*
   return std::ranges::any_of(words, [&](const char* word) { return primitive.is(word); });
 }
 
-Vec3 firstThree(const RadiancePrimitive& given) {
-  return {given.numbers[0], given.numbers[1], given.numbers[2]};
-}
-
 /// A glow of a negative radius is seen, and lights nothing.
 bool isLightless(const RadiancePrimitive& given) {
   return given.is("glow") && given.numbers[3] < 0;
@@ -31,7 +27,7 @@ bool RadianceModifiers::emits() const {
   return isOne(*material, {"light", "glow", "illum"}) && !isLightless(*material);
 }
 
-Vec3 RadianceModifiers::radiance() const { return firstThree(*material); }
+Vec3 RadianceModifiers::radiance() const { return material->three(0); }
 
 RadianceModifiers modifiersOf(const RadianceReader& reader, const RadiancePrimitive& surface) {
   RadianceModifiers found;
@@ -122,7 +118,7 @@ Material RadianceMaterials::ofEmitter(const RadianceModifiers& modifiers, Materi
 Material RadianceMaterials::ofReflector(const RadiancePrimitive& given, Material material) {
   const bool trans = isOne(given, {"trans", "trans2"});
   if (trans || isOne(given, {"plastic", "metal", "plastic2", "metal2", "mirror"})) {
-    material.reflectance = firstThree(given);
+    material.reflectance = given.three(0);
     if (given.is("mirror") || given.numbers[3] != 0) {
       notes_.add("specularity and roughness are not used: all of its colour is matt, material",
                  material.name);

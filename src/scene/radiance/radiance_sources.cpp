@@ -17,16 +17,8 @@ std::vector<double> bandsOf(const Vec3& value) { return {value.x, value.y, value
 
 }  // namespace
 
-RadianceSources::RadianceSources(const RadianceReader& reader, FeatureNotes& notes)
-    : reader_(reader), notes_(notes) {
-  // The sun alone is called by its kind's word, so that another may replace it.
-  for (const Light& kind : lightKinds()) {
-    if (kind.name != Sun::kTraits.word) names_.make(kind.name);
-  }
-}
-
 void RadianceSources::add(const RadiancePrimitive& source) {
-  const Vec3 middle(source.numbers[0], source.numbers[1], source.numbers[2]);
+  const Vec3 middle = source.three(0);
   const double angle = source.numbers[3];
   if (!(glm::length(middle) > 0)) reader_.fail(source, "has no direction; give one");
   if (!(angle >= 0 && angle <= 360)) {
@@ -67,7 +59,7 @@ void RadianceSources::add(const RadiancePrimitive& source) {
 void RadianceSources::addSun(const RadiancePrimitive& source, const Vec3& radiance) {
   const double sine = std::sin(source.numbers[3] / 2 * std::numbers::pi / 180);
   Sun sun;
-  sun.toward = glm::normalize(Vec3(source.numbers[0], source.numbers[1], source.numbers[2]));
+  sun.toward = glm::normalize(source.three(0));
   sun.diameter = source.numbers[3];
   suns_.push_back(
       {names_.make(source.name), sun, bandsOf(std::numbers::pi * sine * sine * radiance), false});

@@ -11,7 +11,8 @@ namespace radiosity {
 /// Collects the sources of a scene, solid angles far away, as lights.
 class RadianceSources {
  public:
-  RadianceSources(const RadianceReader& reader, FeatureNotes& notes);
+  RadianceSources(const RadianceReader& reader, FeatureNotes& notes)
+      : reader_(reader), notes_(notes) {}
 
   /// A disc of up to 90 degrees is a sun, one of 180 half a sky and of 360 a whole one, each of one
   /// radiance. Others are left out, with a note. Errors: InputError for numbers that are none.
@@ -24,7 +25,8 @@ class RadianceSources {
 
   const RadianceReader& reader_;
   FeatureNotes& notes_;
-  UniqueNames names_;
+  /// The sun alone is called by its kind's word, so that another may replace it.
+  UniqueNames names_ = lightNames(Sun::kTraits.word);
   struct Half {
     std::string name;
     Vec3 middle{0.0};  ///< unit

@@ -196,15 +196,20 @@ test("every control with a value is changed by keys alone", async () => {
   assert.deepEqual(said, []);
 });
 
-test("fingers: a long press picks the second patch, two zoom", async () => {
-  const { page, said } = await open(browser, "small.html", { viewport: { width: 390, height: 844 }, hasTouch: true });
+/** Sends touches of the picture at shares of its width and height. */
+async function fingersOn(page) {
   const box = await page.locator("#picture").boundingBox();
   const fingers = await page.context().newCDPSession(page);
-  const touch = (type, ...points) =>
+  return (type, ...points) =>
     fingers.send("Input.dispatchTouchEvent", {
       type,
       touchPoints: points.map(([x, y], id) => ({ x: box.x + box.width * x, y: box.y + box.height * y, id })),
     });
+}
+
+test("fingers: a long press picks the second patch, two zoom", async () => {
+  const { page, said } = await open(browser, "small.html", { viewport: { width: 390, height: 844 }, hasTouch: true });
+  const touch = await fingersOn(page);
   await page.evaluate(() => document.getElementById("patch-panel").setAttribute("open", ""));
   await touch("touchStart", [0.5, 0.35]);
   await touch("touchEnd");
@@ -241,13 +246,7 @@ test("390 pixels: every target of a finger is 44 pixels high and wide", async ()
 
 test("two fingers walk: ahead, and no farther than the wall", async () => {
   const { page, said } = await open(browser, "small.html", { viewport: { width: 390, height: 844 }, hasTouch: true });
-  const box = await page.locator("#picture").boundingBox();
-  const fingers = await page.context().newCDPSession(page);
-  const touch = (type, ...points) =>
-    fingers.send("Input.dispatchTouchEvent", {
-      type,
-      touchPoints: points.map(([x, y], id) => ({ x: box.x + box.width * x, y: box.y + box.height * y, id })),
-    });
+  const touch = await fingersOn(page);
   const eye = async () => (await text(page, "camera-text")).match(/eye=([^;]+)/)[1].split(",").map(Number);
   const pinch = async () => {
     await touch("touchStart", [0.47, 0.5], [0.53, 0.5]);
