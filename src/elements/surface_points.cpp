@@ -31,6 +31,18 @@ bool isOn(const PatchMesh& mesh, const ElementRoots& roots, std::size_t root, co
   return true;
 }
 
+/// The vector in the plane of two that has each as its part in the direction of that; 0 if they are
+/// parallel.
+Vec3 meetingOf(const Vec3& a, const Vec3& b) {
+  const double aa = glm::dot(a, a);
+  const double bb = glm::dot(b, b);
+  const double ab = glm::dot(a, b);
+  const double both = aa * bb - ab * ab;
+  constexpr double kParallel = 1e-6;
+  if (!(both > kParallel * aa * bb)) return Vec3(0.0);
+  return (a * (bb * (aa - ab)) + b * (aa * (bb - ab))) / both;
+}
+
 }  // namespace
 
 /// A root's edge between two vertices of the mesh; sorting brings equal edges together.
@@ -51,7 +63,7 @@ ElementSurface::ElementSurface(const PatchMesh& mesh, double crease, const Inset
   nobody = Index(owners.size());
   owners.emplace_back();
   addVertices(mesh, cornerGroups(mesh, crease));
-  addEdges(mesh, crease);
+  addEdges(mesh, crease, inset, inner.value_or(inset));
   insetCorners(mesh, inset, insets_, &SurfaceEdge::inset, &SurfacePoint::position);
   for (SurfacePoint& point : points) point.inner = point.position;
   if (inner) {
@@ -180,7 +192,18 @@ bool ElementSurface::besideSliver(const PatchMesh& mesh, std::size_t a, std::siz
   return std::min(inset, other) < kSliver * std::max(inset, other);
 }
 
-void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
+/// Of points on a border, from it: by how far the root goes in from there.
+double ElementSurface::insetFrom(const PatchMesh& mesh, std::size_t root, const Vec3& border,
+                                 const Vec3& inward, const Inset& inset) const {
+  double depth = 0;
+  for (std::size_t k = 0; k < roots.cornerCount(root); ++k) {
+    depth = std::max(depth, glm::dot(inward, mesh.vertices[roots.corner[root][k]] - border));
+  }
+  return std::min(inset.of_diagonal * diagonal, inset.of_height * depth);
+}
+
+void ElementSurface::addEdges(const PatchMesh& mesh, double crease, const Inset& inset,
+                              const Inset& inner) {
   std::vector<RootEdge> all;
   for (Index r = 0; r < roots.size(); ++r) {
     const auto n = Index(roots.cornerCount(r));
@@ -217,12 +240,13 @@ void ElementSurface::addEdges(const PatchMesh& mesh, double crease) {
       } else {
         tag[edge.root][edge.number] = edge.root + 1;
         fresh.owners = mesh.polygon[patch];
-        const Vec3 along = points[b].place - points[a].place;
+        const Vec3& border = points[a].place;
+        const Vec3 along = points[b].place - border;
         const double length = glm::length(along);
         if (length > 0) {
           const Vec3 inward = glm::cross(mesh.normal[patch], along / length);
-          fresh.inset = inward * insets_[edge.root];
-          fresh.inner = inward * inner_insets_[edge.root];
+          fresh.inset = inward * insetFrom(mesh, edge.root, border, inward, inset);
+          fresh.inner = inward * insetFrom(mesh, edge.root, border, inward, inner);
         }
       }
       edges.edge(a, b, tag[edge.root][edge.number], fresh);
@@ -267,6 +291,50 @@ void ElementSurface::insetCorners(const PatchMesh& mesh, const Inset& inset,
   leaveSlivers(mesh, insets, inward, most);
   for (std::size_t v = 0; v < points.size(); ++v) {
     points[v].*position = points[v].place + inward[v] * most[v];
+  }
+  insetFromBorders(mesh, of_edge, position);
+}
+
+/// Where one or two borders meet at a corner in a plane, it is as far from each as the middles of
+/// edges there: a long strip has different insets from its sides and from its ends.
+void ElementSurface::insetFromBorders(const PatchMesh& mesh, Vec3 SurfaceEdge::*of_edge,
+                                      Vec3 SurfacePoint::*position) {
+  struct Borders {
+    std::array<Vec3, 2> inset{};
+    std::size_t count = 0;  // more than two: not to be solved for
+  };
+  std::vector<Borders> borders(points.size());
+  const auto add = [](Borders& of, const Vec3& inset) {
+    constexpr double kAlike = 1 - 1e-6;
+    for (std::size_t k = 0; k < std::min<std::size_t>(of.count, 2); ++k) {
+      const double most = glm::length(of.inset[k]);
+      const double length = glm::length(inset);
+      if (glm::dot(of.inset[k], inset) < kAlike * most * length) continue;
+      if (length > most) of.inset[k] = inset;
+      return;
+    }
+    if (of.count < 2) of.inset[of.count] = inset;
+    ++of.count;
+  };
+  for (Index r = 0; r < roots.size(); ++r) {
+    const auto n = Index(roots.cornerCount(r));
+    for (Index k = 0; k < n; ++k) {
+      if (tag[r][k] == 0) continue;
+      const std::array<Index, 2> ends = {vertex[r][k], vertex[r][(k + 1) % n]};
+      const Vec3& inset = edges.find(ends[0], ends[1], tag[r][k])->*of_edge;
+      for (const Index v : ends) add(borders[v], inset);
+    }
+  }
+  for (Index r = 0; r < roots.size(); ++r) {
+    for (std::size_t k = 0; k < roots.cornerCount(r); ++k) {
+      const Index v = vertex[r][k];
+      const Borders& at = borders[v];
+      if (points[v].owners >= mesh.polygons.size() || at.count == 0 || at.count > 2) continue;
+      const Vec3 moved = at.count == 1 ? at.inset[0] : meetingOf(at.inset[0], at.inset[1]);
+      if (moved != Vec3(0.0) && isOn(mesh, roots, r, points[v].place + moved)) {
+        points[v].*position = points[v].place + moved;
+      }
+    }
   }
 }
 

@@ -18,7 +18,7 @@ namespace radiosity {
 /// would decide what a point sees.
 struct Inset {
   double of_diagonal;  ///< of the scene, ...
-  double of_height;    ///< ... but at most of a root's least height: a sliver's vertices stay on it
+  double of_height;    ///< ... but at most of how far a root goes in from there
 };
 
 /// The inset for direct light, which changes in steps where bodies touch.
@@ -96,11 +96,15 @@ struct ElementSurface {
   struct Corner;
   struct RootEdge;
   void addVertices(const PatchMesh& mesh, const CornerGroups& groups);
-  void addEdges(const PatchMesh& mesh, double crease);
+  void addEdges(const PatchMesh& mesh, double crease, const Inset& inset, const Inset& inner);
+  double insetFrom(const PatchMesh& mesh, std::size_t root, const Vec3& border, const Vec3& inward,
+                   const Inset& inset) const;
   std::vector<double> findInsets(const PatchMesh& mesh, const Inset& inset) const;
   bool besideSliver(const PatchMesh& mesh, std::size_t a, std::size_t b) const;
   void insetCorners(const PatchMesh& mesh, const Inset& inset, std::span<const double> insets,
                     Vec3 SurfaceEdge::*of_edge, Vec3 SurfacePoint::*position);
+  void insetFromBorders(const PatchMesh& mesh, Vec3 SurfaceEdge::*of_edge,
+                        Vec3 SurfacePoint::*position);
   void keepToCurves(const PatchMesh& mesh, const Inset& inset, std::span<Vec3> inward,
                     std::span<double> distance) const;
   void leaveSlivers(const PatchMesh& mesh, std::span<const double> insets,
