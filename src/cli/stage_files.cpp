@@ -69,14 +69,13 @@ void requireSolver(const PipelineOptions& options) {
       method.word, method.uses("symmetrize") ? ", or merge the rows with --symmetrize" : ""));
 }
 
-/// Whether what is written, or shared by processes, is made of form factors one by one.
+/// Whether what is written is made of form factors one by one.
 bool needsPairs(const Session& session) {
   const Request& request = session.request;
   // Tables of `factors` are for who wants single ones: rows that are cut have to be asked for.
   const bool lists = request.command == Command::factors &&
                      request.apply(FormFactorOptions()).method == FormFactorMethod::automatic;
-  return session.processes != nullptr || lists ||
-         std::ranges::any_of(parseOutputs(request), [&](const Output& output) {
+  return lists || std::ranges::any_of(parseOutputs(request), [&](const Output& output) {
            const bool sums = !request.between.empty() && request.between != "patches";
            return output.format == Format::matrix_market && !sums;
          });

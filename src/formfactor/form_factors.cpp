@@ -71,10 +71,10 @@ void FormFactorOptions::validate() const {
     throw InputError(fmt::format("method {}: computes nothing", traitsOf(method).word));
   }
   if (needs_pairs && !traitsOf(method).stores_pairs) {
-    throw InputError(fmt::format(
-        "method {}: has no form factors pair by pair, which several processes, a page and a matrix "
-        "in a file are made of; give {} or rays",
-        traitsOf(method).word, spelled("method", "exact")));
+    throw InputError(
+        fmt::format("method {}: has no form factors pair by pair, which a page and a matrix "
+                    "in a file are made of; give {} or rays",
+                    traitsOf(method).word, spelled("method", "exact")));
   }
 }
 

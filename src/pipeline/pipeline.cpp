@@ -228,7 +228,8 @@ void Pipeline::serve(Processes& processes, SharedTask task) {
     return;
   }
   if (task == SharedTask::form_factors) {
-    serveRows(processes, *shareRows(processes), makeMatrixBlockWriter);
+    // Rows that are cut are all in process 0.
+    if (const auto own = shareRows(processes)) serveRows(processes, *own, makeMatrixBlockWriter);
     return;
   }
   std::vector<char> path;
@@ -239,7 +240,7 @@ void Pipeline::serve(Processes& processes, SharedTask task) {
 
 void Pipeline::loadMatrix() {
   if (!results_.factors || results_.factors->matrix) return;
-  if (processes_ != nullptr) {
+  if (processes_ != nullptr && traitsOf(results_.factors->method).stores_pairs) {
     shareStoredMatrix();
     return;
   }

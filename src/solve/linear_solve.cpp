@@ -149,8 +149,8 @@ void requireSolver(Solver solver, const ExchangeOperator& matrix) {
   }
   if (solver == Solver::petsc && !isShared(matrix)) {
     throw InputError(
-        "solver petsc: it runs on the processes of mpirun: mpirun -n 4 radiosity solve ...; "
-        "without, use cg or auto");
+        "solver petsc: it runs on pairs that the processes of mpirun share: mpirun -n 4 radiosity "
+        "solve ...; without, or for rows that are cut, use auto");
   }
   if (solver == Solver::gauss_seidel && !matrix.sweeps()) {
     throw InputError(

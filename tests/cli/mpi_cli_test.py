@@ -80,6 +80,7 @@ class MpiTest(CliTest):
                                                (ROOMS, "250", ["exact"], [4]),
                                                (CITY, "1200", ["exact"], [2]),
                                                (CITY, "600", ["rays"], [1, 4]),
+                                               (CITY, "1200", ["cut"], [1, 2, 4]),
                                                (ROOMS, "250", raw, [2])]:
             with self.subTest(f"{scene} {method}"):
                 options = ["factors", scene, "--patches", patches, "--method", *method]
@@ -95,6 +96,17 @@ class MpiTest(CliTest):
         self.run_program(*options, "-o", "one.h5")
         self.mpirun(3, *options, "-o", "many.h5")
         self.assert_same_radiosity("one.h5", "many.h5")
+
+    def test_rows_that_are_cut_are_solved_and_read_by_process_0(self):
+        options = ["solve", ROOMS, "--patches", "600", "--method", "cut", "--tolerance", ".05"]
+        self.run_program(*options, "-o", "one.h5")
+        self.mpirun(3, *options, "-o", "many.h5")
+        self.assertEqual(self.radiosity_of("one.h5").tobytes(), self.radiosity_of("many.h5").tobytes())
+        self.mpirun(2, "solve", "many.h5", "--set", "plaster.reflectance=.2", "-o", "later.h5")
+        self.run_program("solve", "one.h5", "--set", "plaster.reflectance=.2", "-o", "alone.h5")
+        self.assertEqual(self.radiosity_of("later.h5").tobytes(), self.radiosity_of("alone.h5").tobytes())
+        done = self.mpirun(2, "solve", "many.h5", "--solver", "petsc", code=2)
+        self.assertIn("rows that are cut", done.stderr)
 
     def test_a_room_without_light_stays_dark(self):
         (self.folder / "box.mtl").write_text(

@@ -68,7 +68,10 @@ bool CutBlocks::take(std::size_t block, ByteReader& bytes) {
 }
 
 void CutBlocks::tell(BlockRange range, ByteWriter& bytes) {
-  for (std::size_t block = range.begin; block < range.end; ++block) put(block, bytes);
+  for (std::size_t block = range.begin; block < range.end; ++block) {
+    put(block, bytes);
+    rows_[block] = {};
+  }
 }
 
 bool CutBlocks::hear(BlockRange range, ByteReader& bytes) {

@@ -58,6 +58,27 @@ std::shared_ptr<const RowMatrix> knownPairs(const RayScene& scene, const KnownEn
   return pairs;
 }
 
+std::vector<Index> knownWhole(const RayScene& scene, const KnownEntries& known) {
+  std::vector<Index> patches;
+  for (std::size_t k = 0; k < scene.size(); ++k) {
+    if (known.rowAt(k) != nullptr) patches.push_back(scene.order()[k]);
+  }
+  return patches;
+}
+
+/// What process 0 tells the others.
+struct CutTask {
+  std::uint32_t rays = 0;  ///< of a row, in each replicate
+  double opening = 0;
+  std::vector<Index> known;  ///< patches whose rows are known whole
+
+  void broadcast(Processes& processes) {
+    processes.broadcastValue(rays);
+    processes.broadcastValue(opening);
+    processes.broadcastArray(known);
+  }
+};
+
 class Cut final : public PreparedMethod {
  public:
   Cut(const PatchMesh& mesh, const FormFactorOptions& options)
@@ -189,10 +210,12 @@ FormFactors Cut::make(KnownRows exact, const RowRun& run) const {
   report.cut = reportOfPlan();
   report.cut.seconds_prepare += exact.seconds;
   const KnownEntries known(std::move(exact.rows), scene.position());
-  parts.tree = treeOfPatches(mesh(), scene, known);
+  CutTask task{plan_.rays, plan_.opening, knownWhole(scene, known)};
+  if (run.processes != nullptr) task.broadcast(*run.processes);
+  parts.tree = treeOfPatches(mesh(), scene, task.known);
   parts.bias = plan_.bias;
-  const RowCutter cutter(scene, parts.tree, plan_.opening);
-  CutBlocks blocks(cutter, plan_.rays, run.progress);
+  const RowCutter cutter(scene, parts.tree, task.opening);
+  CutBlocks blocks(cutter, task.rays, run.progress);
   makeAllRows(blocks, run);
   ClosedRows closed(mesh());
   std::vector<std::vector<SeenBack>> seen(n);
@@ -226,8 +249,16 @@ CutReport Cut::reportOfPlan() const {
   return report;
 }
 
-std::shared_ptr<const ExchangeMatrix> Cut::share(const RowRun& /*run*/) const {
-  throw InputError("rows that are cut are made by one process: leave out mpirun");
+/// Process 0 gets all rows, which take less than pairs, and keeps the journal.
+std::shared_ptr<const ExchangeMatrix> Cut::share(const RowRun& run) const {
+  CutTask task;
+  task.broadcast(*run.processes);
+  const RayScene scene(mesh(), options().seed);
+  const PatchTree tree = treeOfPatches(mesh(), scene, task.known);
+  const RowCutter cutter(scene, tree, task.opening);
+  CutBlocks blocks(cutter, task.rays, run.progress);
+  makeBlocks(blocks, {run.progress, nullptr, run.processes});
+  return nullptr;
 }
 
 }  // namespace

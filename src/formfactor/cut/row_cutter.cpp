@@ -15,12 +15,15 @@ struct HitPatch {
 
 }  // namespace
 
-PatchTree treeOfPatches(const PatchMesh& mesh, const RayScene& scene, const KnownEntries& known) {
+PatchTree treeOfPatches(const PatchMesh& mesh, const RayScene& scene,
+                        std::span<const Index> known) {
+  std::vector<std::uint8_t> left_out(scene.size(), 0);
+  for (const Index patch : known) left_out[patch] = 1;
   std::vector<PatchTree::Patch> patches;
   for (std::size_t k = 0; k < scene.size(); ++k) {
     const double area = scene.area()[k];
-    if (!(area > 0) || known.rowAt(k) != nullptr) continue;
     const Index patch = scene.order()[k];
+    if (!(area > 0) || left_out[patch] != 0) continue;
     const glm::vec3 at = scene.caster().place(mesh.centroid[patch]);
     const glm::vec3 facing(mesh.normal[patch]);
     patches.push_back(

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "formfactor/known_entries.h"
 #include "formfactor/rays/ray_scene.h"
 #include "formfactor/row_accounts.h"
 #include "matrix/cut_operator.h"
@@ -12,8 +12,9 @@
 
 namespace radiosity {
 
-/// The patches that have an area and no row that is known whole, in the coordinates of rays.
-PatchTree treeOfPatches(const PatchMesh& mesh, const RayScene& scene, const KnownEntries& known);
+/// The patches that have an area and are not `known`, whose rows are known whole, in the
+/// coordinates of rays.
+PatchTree treeOfPatches(const PatchMesh& mesh, const RayScene& scene, std::span<const Index> known);
 
 /// What the rays of a row count beside its cut. Each hit stands for itself.
 struct CutCounts {
