@@ -100,6 +100,36 @@ double normOf(std::span<const double> irradiance, std::span<const double> area) 
   return std::sqrt(squares);
 }
 
+/// About the relative error (L2, by area) of F B at most, where rows state their errors. What a row
+/// is off by is independent from column to column, has a variance in proportion to F_ij, as counts
+/// of rays do, and sums to nothing with what the row misses: so its H is off by its error times the
+/// standard deviation of B over what it sees. Exact rows, of emitters, are right in all columns,
+/// too: their own light is left out.
+std::optional<double> errorByRows(const FormFactors& factors, std::span<const double> emission,
+                                  const Solution& solution) {
+  const std::span<const double> area = factors.matrix->area();
+  const double norm = normOf(solution.irradiance, area);
+  if (factors.error.empty() || !(norm > 0)) return std::nullopt;
+  const auto width = std::size_t(solution.bands);
+  // A column of light and one of its squares for each band.
+  std::vector<double> light(2 * solution.radiosity.size());
+  std::vector<double> seen(light.size());
+  for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
+    const double own = factors.report.exact_rows ? emission[k] : 0.0;
+    const double value = solution.radiosity[k] - own;
+    light[2 * k] = value;
+    light[2 * k + 1] = value * value;
+  }
+  factors.matrix->product(light, 2 * solution.bands, seen);
+  double square = 0;
+  for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
+    const std::size_t i = k / width;
+    const double variance = std::max(0.0, seen[2 * k + 1] - seen[2 * k] * seen[2 * k]);
+    square += area[i] * factors.error[i] * factors.error[i] * variance;
+  }
+  return std::sqrt(square) / norm;
+}
+
 /// Fills in the summary of a scene in which B = 0 for every patch.
 void nameDarkness(std::span<const double> by_lights, SolveSummary& summary) {
   const bool sky = std::any_of(by_lights.begin(), by_lights.end(), [](double h) { return h > 0; });
@@ -165,14 +195,18 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
     summary.message += fmt::format("; {}", factors.condition());
   }
   if (!factors.matrix->isNonNegative()) raiseFromBelowZero(source, solution);
-  const double reflected = normOf(solution.irradiance, factors.matrix->area());
-  for (std::size_t k = 0; k < by_lights.size(); ++k) solution.irradiance[k] += by_lights[k];
+  const std::span<const double> area = factors.matrix->area();
   summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
+  if (!summary.irradiance_error)
+    summary.irradiance_error = errorByRows(factors, emission, solution);
+  const double reflected = normOf(solution.irradiance, area);
+  for (std::size_t k = 0; k < by_lights.size(); ++k) solution.irradiance[k] += by_lights[k];
   if (summary.irradiance_error) {
-    *summary.irradiance_error *= reflected / normOf(solution.irradiance, factors.matrix->area());
+    *summary.irradiance_error *= reflected / normOf(solution.irradiance, area);
     if (summary.usable()) {
       summary.message +=
-          fmt::format("; irradiance off by about {:.2g}%", 100 * *summary.irradiance_error);
+          fmt::format("; irradiance off by about {:.2g}%{}", 100 * *summary.irradiance_error,
+                      factors.error.empty() ? "" : " at most");
     }
   }
   summary.energy = energyAccount(factors, reflectance, {emission, by_lights}, solution.radiosity,
