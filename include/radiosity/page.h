@@ -45,6 +45,9 @@ struct PageReport {
   std::size_t pairs = 0;  ///< form factors kept: one a pair, diagonal included
   FactorQuantisation quantisation;
   std::size_t element_triangles = 0;  ///< of the lit mesh of elements; 0: none
+  std::size_t textures = 0;           ///< that surfaces with elements are drawn with
+  std::size_t texels = 0;             ///< of all of them, at most 4,194,304
+  std::size_t halved_textures = 0;    ///< in each direction, once or more, to be so few
   std::size_t bytes = 0;              ///< of the scene's data, as the browser unpacks it
   std::size_t packed_bytes = 0;       ///< of the same in the file: compressed, as text
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "cli/matrix_commands.h"
 #include "cli/radiant.h"
 #include "cli/stored_conditions.h"
@@ -68,6 +70,21 @@ std::optional<HeatConditions> storedConditions(Session& session, const Pipeline&
   text.origin = request.input + ": /heat/condition_table";
   text.groups.insert(text.groups.begin(), request.groups.begin(), request.groups.end());
   return readHeatConditions(pipeline.scene(), text);
+}
+
+bool hasHeat(Session& session, Pipeline& pipeline) {
+  std::optional<HeatConditions> conditions = storedConditions(session, pipeline);
+  if (!conditions) return false;
+  pipeline.options().heat_conditions = std::move(*conditions);
+  return true;
+}
+
+void requireHeat(Session& session, Pipeline& pipeline) {
+  if (hasHeat(session, pipeline)) return;
+  throw InputError(fmt::format(
+      "{}: has no heat to show; solve for it first: radiosity heat SCENE --thermal TABLE.csv "
+      "-o HEAT.h5, and render HEAT.h5",
+      session.request.input));
 }
 
 int runHeat(Session& session) {

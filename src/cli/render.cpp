@@ -11,6 +11,7 @@
 #include "cli/lightmap.h"
 #include "cli/picture.h"
 #include "cli/show.h"
+#include "cli/stored_conditions.h"
 #include "cli/summaries.h"
 #include "radiosity/pipeline.h"
 #include "radiosity/results.h"
@@ -170,6 +171,7 @@ int runRender(Session& session) {
   Picture picture = choosePicture(request, pipeline.scene());
   if (!show.quantity) requireColours(pipeline, request, files);
   if (show.needsLight() && request.mix.empty()) requireLight(session, pipeline);
+  if (show.needsHeat()) requireHeat(session, pipeline);
   const PatchMesh& mesh = pipeline.mesh().mesh;
   requirePatch(show, mesh);
   if (!files.has(Format::results) && pipeline.onlyAdds()) {
@@ -178,6 +180,10 @@ int runRender(Session& session) {
   const FormFactors& factors = pipeline.factors();
   keepFactors(session, pipeline, files);
   int code = 0;
+  if (show.needsHeat()) {
+    const HeatSummary& heat = pipeline.heat().summary;
+    code = exitCode(session, heat.usable(), heat.message);
+  }
   std::vector<double> reflected;
   const std::optional<MixedLight> mix = mixOf(session, pipeline);
   if (mix) {

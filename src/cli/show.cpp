@@ -24,7 +24,10 @@ struct PatchWord {
 };
 constexpr PatchWord kOfPatches[] = {{"radiosity", Quantity::radiosity},
                                     {"irradiance", Quantity::irradiance},
-                                    {"row-sum", Quantity::row_sum}};
+                                    {"row-sum", Quantity::row_sum},
+                                    {"temperature", Quantity::temperature},
+                                    {"net-flux", Quantity::net_flux},
+                                    {"heat-irradiance", Quantity::heat_irradiance}};
 constexpr const char* kFormFactor = "form-factor:";
 
 /// The same with the ends of --range.
@@ -107,14 +110,21 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
   const PatchMesh& mesh = pipeline.mesh().mesh;
   const ScalarField field = pipeline.field(quantity, patch);
   const FalseColour legend = inRange(session, field.legend);
-  const auto [low, high] = std::minmax_element(field.values.begin(), field.values.end());
+  RenderOptions options = picture.options;
+  options.smooth = options.smooth && field.smooth;
+  std::vector<double> known;  // a temperature may be undetermined
+  std::ranges::copy_if(field.values, std::back_inserter(known),
+                       [](double value) { return !std::isnan(value); });
   session.report.text("quantity", "shown", withUnit(legend));
   if (quantity == Quantity::form_factor) describePatch(session.report, mesh, patch);
-  session.report.number("lowest", "lowest of all patches", *low, legend.unit);
-  session.report.number("highest", "highest of all patches", *high, legend.unit);
+  if (!known.empty()) {
+    const auto [low, high] = std::ranges::minmax(known);
+    session.report.number("lowest", "lowest of all patches", low, legend.unit);
+    session.report.number("highest", "highest of all patches", high, legend.unit);
+  }
   files.write(Format::png, withUnit(legend), [&](const std::string& temporary) {
     writeImage(temporary,
-               renderFalseColour(mesh, field.values, legend, picture.camera, picture.options,
+               renderFalseColour(mesh, field.values, legend, picture.camera, options,
                                  session.progress),
                true, metadataOf(picture, legend.title, legend.unit));
   });
@@ -122,7 +132,7 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
     std::vector<double> values;
     values.reserve(3 * field.values.size());
     for (const double value : field.values) values.insert(values.end(), 3, value);
-    const Image grey = render(mesh, values, picture.camera, picture.options, session.progress);
+    const Image grey = render(mesh, values, picture.camera, options, session.progress);
     const std::string word = session.request.show.substr(0, session.request.show.find(':'));
     writeImage(temporary, grey, false, metadataOf(picture, legend.title, legend.unit),
                channelOf(word, legend.unit, grey));

@@ -19,6 +19,10 @@ struct Show {
   bool needsLight() const {
     return !quantity || *quantity == Quantity::radiosity || *quantity == Quantity::irradiance;
   }
+  bool needsHeat() const {
+    return quantity == Quantity::temperature || quantity == Quantity::net_flux ||
+           quantity == Quantity::heat_irradiance;
+  }
 };
 
 /// Errors: InputError for a word that is none, with the nearest.

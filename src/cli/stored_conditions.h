@@ -11,4 +11,10 @@ namespace radiosity::cli {
 /// heat, or heat whose conditions were not given as text. Errors: as readHeatConditions().
 std::optional<HeatConditions> storedConditions(Session& session, const Pipeline& pipeline);
 
+/// Lets the pipeline solve for that heat, or find it in the file. False if there is none.
+bool hasHeat(Session& session, Pipeline& pipeline);
+
+/// The same. Errors: InputError with the cure if there is none.
+void requireHeat(Session& session, Pipeline& pipeline);
+
 }  // namespace radiosity::cli

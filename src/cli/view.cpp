@@ -59,6 +59,11 @@ void summarizePage(Report& report, const Picture& picture, double ev, const Page
   report.number("largest_row_error", "  of a row, summed, at most", q.largest_row_error);
   report.count("left_out", "  pairs too small to be kept", q.left_out);
   report.count("element_triangles", "triangles of elements", page.element_triangles);
+  if (page.textures > 0) {
+    report.count("textures", "textures", page.textures);
+    report.count("texels", "  texels of all", page.texels);
+    report.count("halved_textures", "  that were halved to be so few", page.halved_textures);
+  }
   report.bytes("data_bytes", "data, unpacked", page.bytes);
   report.bytes("packed_bytes", "data in the file", page.packed_bytes);
 }
@@ -86,25 +91,20 @@ std::string sceneArguments(const Request& request, const OutputSet& files) {
   return text;
 }
 
-/// Solves for the heat of the results file, or finds it there. False if it has none.
-bool hasHeat(Session& session, Pipeline& pipeline) {
-  std::optional<HeatConditions> conditions = storedConditions(session, pipeline);
-  if (!conditions) return false;
-  pipeline.options().heat_conditions = std::move(*conditions);
-  return true;
-}
-
-/// Draws the page's first picture small.
-void drawThumbnail(Session& session, Pipeline& pipeline, const SurfaceLight& light,
-                   const ExposedPicture& shown, OutputSet& files) {
+/// The page's first picture, small: temperatures where there is heat, which need no light.
+Image thumbnail(Session& session, Pipeline& pipeline, const SurfaceLight& light,
+                const ExposedPicture& shown, bool heat) {
+  const PatchMesh& mesh = pipeline.mesh().mesh;
+  const Camera& camera = shown.picture.camera;
   RenderOptions small = shown.picture.options;
   small.width = 480;
   small.height = 360;
-  const Image radiance =
-      renderRadiance(pipeline.mesh().mesh, light, shown.picture.camera, small, session.progress);
-  files.write(Format::png, "thumbnail", [&](const std::string& temporary) {
-    writeImage(temporary, exposed(radiance, shown.ev), false, {});
-  });
+  if (!heat) {
+    return exposed(renderRadiance(mesh, light, camera, small, session.progress), shown.ev);
+  }
+  const ScalarField field = pipeline.field(Quantity::temperature);
+  small.smooth = field.smooth;
+  return renderFalseColour(mesh, field.values, field.legend, camera, small, session.progress);
 }
 
 void writePages(Session& session, Pipeline& pipeline, bool elements, bool heat, OutputSet& files) {
@@ -120,7 +120,11 @@ void writePages(Session& session, Pipeline& pipeline, bool elements, bool heat, 
   files.write(Format::page, "page, opens in a browser", [&](const std::string& temporary) {
     page = writePage(temporary, pipeline, light, options, session.progress);
   });
-  if (!session.request.gallery.empty()) drawThumbnail(session, pipeline, light, shown, files);
+  if (!session.request.gallery.empty()) {
+    files.write(Format::png, "thumbnail", [&](const std::string& temporary) {
+      writeImage(temporary, thumbnail(session, pipeline, light, shown, heat), heat, {});
+    });
+  }
   summarizePage(session.report, shown.picture, shown.ev, page);
   for (const Light& sky : unevenSkies(pipeline.scene().lights)) {
     const Note note{

@@ -1,6 +1,7 @@
 #include "page/elements.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "page/header.h"
 #include "page/lamps.h"
 #include "page/surfaces.h"
+#include "page/texture_pieces.h"
 #include "results/lit_triangles.h"
 #include "results/lit_vertices.h"
 
@@ -151,56 +153,138 @@ class LampShares {
   std::vector<std::vector<std::uint16_t>> shares_;  ///< of each lamp, three a vertex
 };
 
-/// The lit mesh. Corners at one point of one surface's light and material are one vertex.
-struct LitElements {
-  std::vector<Vec3> positions;
-  std::vector<float> irradiance;  ///< three a vertex, W/m^2
-  std::vector<Index> patches;
-  std::vector<Index> triangles;
-};
-
-LitElements litElements(Pipeline& pipeline, const SurfaceLight& light, double crease,
-                        LampShares& shares) {
-  const PatchMesh& mesh = pipeline.mesh().mesh;
-  const SurfaceLight shown = irradianceOf(light, pipeline.solution());
-  const std::vector<double> corners = cornerValues(mesh, shown.patches, 3, crease);
-  LitTriangles lit(mesh, shown.patches, corners, &shown);
-  LitVertices vertices;
-  LitElements found;
-  std::vector<LitCorner> triple;
-  for (Index i = 0; i < mesh.size(); ++i) {
-    triple.clear();
-    lit.append(i, triple);
-    const auto may_be = [&](Index vertex) {
-      return alike(mesh, pipeline.materials(), found.patches[vertex], i);
-    };
-    for (const LitCorner& corner : triple) {
-      const auto [vertex, is_new] = vertices.of(corner, may_be);
-      found.triangles.push_back(vertex);
-      if (!is_new) continue;
-      const LitVertices::Triple& value = vertices.radiosity().back();
-      found.patches.push_back(i);
-      found.positions.push_back(lit.position(corner.point));
-      found.irradiance.insert(found.irradiance.end(), value.begin(), value.end());
-      shares.addVertex(i, found.positions.back(), value);
+/// The lit mesh. Corners at one point of one surface's light and material are one vertex, unless
+/// their texture coordinates or colours differ.
+class LitElements {
+ public:
+  LitElements(Pipeline& pipeline, const SurfaceLight& light, double crease, LampShares& shares)
+      : mesh_(pipeline.mesh().mesh),
+        materials_(pipeline.materials()),
+        shown_(irradianceOf(light, pipeline.solution())),
+        corners_(cornerValues(mesh_, shown_.patches, 3, crease)),
+        lit_(mesh_, shown_.patches, corners_, &shown_),
+        pieces_(pipeline.scene(), mesh_),
+        shares_(shares) {
+    std::vector<LitCorner> triples;
+    for (Index i = 0; i < mesh_.size(); ++i) {
+      triples.clear();
+      lit_.append(i, triples);
+      const bool varies = pieces_.enter(i);
+      for (std::size_t t = 0; t < triples.size(); t += 3) {
+        const Corners corners = {triples[t], triples[t + 1], triples[t + 2]};
+        if (varies) {
+          addPieces(i, corners);
+        } else {
+          for (const LitCorner& corner : corners) addCorner(i, corner, {});
+        }
+      }
     }
   }
-  return found;
-}
+
+  std::size_t count() const { return triangles_.size() / 3; }
+
+  void addTo(const Vec3& origin, Container& container) const {
+    container.add("element_position", packed(positions_, origin));
+    container.add("element_triangle", triangles_);
+    container.add("element_irradiance", irradiance_);
+    container.add("element_patch", patches_);
+    if (!pieces_.anyVaries()) return;
+    container.add("element_texture_place", places_);
+    if (pieces_.anyColours()) container.add("element_colour", colours_);
+  }
+
+ private:
+  using Corners = std::array<LitCorner, 3>;
+
+  void addPieces(Index patch, const Corners& corners) {
+    const std::array<Vec3, 3> at = {lit_.position(corners[0].point),
+                                    lit_.position(corners[1].point),
+                                    lit_.position(corners[2].point)};
+    pieces_.cut(at, [&](const Piece& piece) {
+      for (const PieceCorner& corner : piece) {
+        const Vec3& w = corner.weights;
+        const auto* whole = std::ranges::find(kCorners, w);
+        if (whole != kCorners.end()) {
+          addCorner(patch, corners[std::size_t(whole - kCorners.begin())], corner);
+          continue;
+        }
+        const Vec3 light = w.x * corners[0].radiosity + w.y * corners[1].radiosity +
+                           w.z * corners[2].radiosity;
+        const auto vertex = vertices_.add({float(light.x), float(light.y), float(light.z)});
+        triangles_.push_back(vertex);
+        describeLast(patch, w.x * at[0] + w.y * at[1] + w.z * at[2], corner);
+      }
+    });
+  }
+
+  void addCorner(Index patch, const LitCorner& corner, const PieceCorner& there) {
+    const auto may_be = [&](Index vertex) {
+      return alike(mesh_, materials_, patches_[vertex], patch) && hasPlace(vertex, there);
+    };
+    const auto [vertex, is_new] = vertices_.of(corner, may_be);
+    triangles_.push_back(vertex);
+    if (is_new) describeLast(patch, lit_.position(corner.point), there);
+  }
+
+  bool hasPlace(Index vertex, const PieceCorner& there) const {
+    if (!pieces_.anyVaries()) return true;
+    const auto same = [](float is, double other) { return is == float(other); };
+    return same(places_[2 * vertex], there.uv.x) && same(places_[2 * vertex + 1], there.uv.y) &&
+           (!pieces_.anyColours() || (colours_[3 * vertex] == codeOf(there.colour.x) &&
+                                      colours_[3 * vertex + 1] == codeOf(there.colour.y) &&
+                                      colours_[3 * vertex + 2] == codeOf(there.colour.z)));
+  }
+
+  /// What the vertex that was added last has beside its light.
+  void describeLast(Index patch, const Vec3& position, const PieceCorner& there) {
+    const LitVertices::Triple& value = vertices_.radiosity().back();
+    patches_.push_back(patch);
+    positions_.push_back(position);
+    irradiance_.insert(irradiance_.end(), value.begin(), value.end());
+    shares_.addVertex(patch, position, value);
+    if (!pieces_.anyVaries()) return;
+    places_.insert(places_.end(), {float(there.uv.x), float(there.uv.y)});
+    if (!pieces_.anyColours()) return;
+    const Vec3& c = there.colour;
+    colours_.insert(colours_.end(), {codeOf(c.x), codeOf(c.y), codeOf(c.z)});
+  }
+
+  static std::uint16_t codeOf(double colour) { return std::uint16_t(std::lround(65535 * colour)); }
+  static constexpr std::array<Vec3, 3> kCorners = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
+
+  const PatchMesh& mesh_;
+  const PatchMaterials& materials_;
+  SurfaceLight shown_;
+  std::vector<double> corners_;
+  LitTriangles lit_;
+  TexturePieces pieces_;
+  LampShares& shares_;
+  LitVertices vertices_;
+  std::vector<Vec3> positions_;
+  std::vector<float> irradiance_;  ///< three a vertex, W/m^2
+  std::vector<Index> patches_;
+  std::vector<float> places_;            ///< two a vertex, texture coordinates
+  std::vector<std::uint16_t> colours_;   ///< three a vertex, of 65535
+  std::vector<Index> triangles_;
+};
 
 }  // namespace
 
 std::size_t addElements(Pipeline& pipeline, const SurfaceLight& light, double crease,
                         const Vec3& origin, Progress& progress, Container& container) {
   LampShares shares(pipeline, light.elements.get(), progress);
-  LitElements lit;
-  if (light.elements) lit = litElements(pipeline, light, crease, shares);
+  if (!light.elements) {
+    shares.addTo(container);
+    container.add("element_position", std::vector<float>());
+    container.add("element_triangle", std::vector<std::uint32_t>());
+    container.add("element_irradiance", std::vector<float>());
+    container.add("element_patch", std::vector<std::uint32_t>());
+    return 0;
+  }
+  const LitElements lit(pipeline, light, crease, shares);
   shares.addTo(container);
-  container.add("element_position", packed(lit.positions, origin));
-  container.add("element_triangle", lit.triangles);
-  container.add("element_irradiance", lit.irradiance);
-  container.add("element_patch", lit.patches);
-  return lit.triangles.size() / 3;
+  lit.addTo(origin, container);
+  return lit.count();
 }
 
 }  // namespace radiosity::page

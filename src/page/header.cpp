@@ -43,7 +43,8 @@ Json materialsOf(const Scene& scene, const std::vector<MaterialColours>& colours
                          {"reflectance", json(colours[m].reflectance)},
                          {"emission", json(colours[m].emission)},
                          {"textured", colours[m].textured},
-                         {"factor", json(scene.materials[m].reflectance)}});
+                         {"factor", json(scene.materials[m].reflectance)},
+                         {"emission_factor", json(scene.materials[m].emission)}});
   }
   return materials;
 }

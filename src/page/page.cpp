@@ -15,6 +15,7 @@
 #include "page/lamps.h"
 #include "page/nodes.h"
 #include "page/surfaces.h"
+#include "page/textures.h"
 #include "radiosity/spelling.h"
 #include "results/glb.h"
 
@@ -77,6 +78,7 @@ std::vector<std::byte> pageData(Pipeline& pipeline, const SurfaceLight& light,
     addEmitted(scene, mesh, pipeline.materials(), matrix, container);
   report.element_triangles =
       addElements(pipeline, light, options.crease, origin, progress, container);
+  if (light.elements) addTextures(scene, mesh, container, report);
   if (options.heat) addHeat(pipeline, container);
   report.nodes = nodes.arePatches() ? 0 : nodes.size();
   report.pairs = codes.pairs;

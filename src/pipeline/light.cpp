@@ -8,6 +8,12 @@ namespace radiosity {
 
 namespace {
 
+std::vector<double> sumsOfBands(std::span<const double> values, int bands) {
+  std::vector<double> sums(values.size() / std::size_t(bands), 0.0);
+  for (std::size_t k = 0; k < values.size(); ++k) sums[k / std::size_t(bands)] += values[k];
+  return sums;
+}
+
 ScalarField brightnessField(const char* title, std::span<const double> values, int bands) {
   return {brightnessOfEach(values, bands), {title + brightnessText(bands), "W/m^2"}};
 }
@@ -71,6 +77,12 @@ ScalarField Pipeline::field(Quantity quantity, std::size_t patch) {
     case Quantity::form_factor: {
       return {matrix().row(patch), {fmt::format("form factor from patch {}", patch), ""}};
     }
+    case Quantity::temperature:
+      return {heat().temperature, {"temperature", "K"}, false};
+    case Quantity::net_flux:
+      return {heat().net_flux, {"net flux of heat, given off", "W/m^2"}, false};
+    case Quantity::heat_irradiance:
+      return {sumsOfBands(heat().irradiance, heat().bands), {"irradiance of heat", "W/m^2"}};
     case Quantity::row_sum:
       break;
   }

@@ -33,7 +33,7 @@ class InViewPixel {
   explicit InViewPixel(InView& view) : view_(view) {}
   void begin() { first_ = true; }
   void sample(Seen seen, const Shade& shade) {
-    if (seen != Seen::front) return;
+    if (seen != Seen::front || std::isnan(shade.value[0])) return;
     view_.low = std::min(view_.low, shade.value[0]);
     view_.high = std::max(view_.high, shade.value[0]);
     if (first_) view_.values.push_back(shade.value[0]);
@@ -59,9 +59,10 @@ class ColourPixel {
   }
   void sample(Seen seen, const Shade& shade) {
     ++count_;
-    sum_ += seen == Seen::front  ? map_.at(range_.position(shade.value[0]))
-            : seen == Seen::back ? Vec3(kBack)
-                                 : Vec3(kMiss);
+    const double value = shade.value[0];
+    sum_ += seen == Seen::back                          ? Vec3(kBack)
+            : seen == Seen::front && !std::isnan(value) ? map_.at(range_.position(value))
+                                                        : Vec3(kMiss);
   }
   void end(int x, int y) {
     float* out = image_.rgba.data() + (std::size_t(y) * image_.width + x) * 4;

@@ -26,13 +26,17 @@ class LitVertices {
     for (const Index k : known) {
       if (radiosity_[k] == value && may_be(k)) return {k, false};
     }
-    const auto added = Index(radiosity_.size());
-    known.push_back(added);
-    radiosity_.push_back(value);
-    return {added, true};
+    known.push_back(add(value));
+    return {known.back(), true};
   }
   std::pair<Index, bool> of(const LitCorner& corner) {
     return of(corner, [](Index) { return true; });
+  }
+
+  /// A vertex that corners do not share.
+  Index add(const Triple& radiosity) {
+    radiosity_.push_back(radiosity);
+    return Index(radiosity_.size() - 1);
   }
 
   const std::vector<Triple>& radiosity() const { return radiosity_; }  ///< W/m^2

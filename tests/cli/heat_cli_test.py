@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from cli_runner import SMALL, CliTest
+from exr_file import ExrFile
 
 SIGMA = 5.67037441918443e-8
 
@@ -67,6 +68,32 @@ class Heat(CliTest):
         self.assertAlmostEqual(report["imbalance_W"], 0, delta=1e-6)
         self.assertEqual(report["linear_solver"], "solved directly")
 
+    def test_pictures_show_heat_by_patch(self):
+        self.heat("plates.obj", "--patches", "20", "--condition", "*.emissivity=0.7", "--condition",
+                  "lower.temperature=500", "--condition", "upper.flux=40", "-o", "h.h5")
+        # From below, the upper plate alone is seen, in the middle of the picture.
+        view = ["--camera", "eye=.5,.5,.1;target=.5,.5,1;up=0,1,0;fov=40", "--width", "60", "--height", "60"]
+        with h5py.File(self.folder / "h.h5") as file:
+            upper = file["form_factors/surface"][()] == 1
+            stored = {"temperature": file["heat/temperature"][()], "net-flux": file["heat/net_flux"][()],
+                      "heat-irradiance": file["heat/irradiance"][()].sum(1)}
+        for name, values in stored.items():
+            shown = self.report("render", "h.h5", "--show", name, *view, "-o", "p.exr", "-o", "p.png")["picture"]
+            self.assertAlmostEqual(shown["lowest"] / values.min(), 1, delta=1e-5)
+            self.assertAlmostEqual(shown["highest"] / values.max(), 1, delta=1e-5)
+            pixels = ExrFile(self.folder / "p.exr").channels[name]
+            self.assertGreaterEqual(pixels[5:-5, 5:-5].min(), values[upper].min() * (1 - 1e-6))
+            self.assertLessEqual(pixels[5:-5, 5:-5].max(), values[upper].max() * (1 + 1e-6))
+        # Patches have a temperature each, which is not interpolated.
+        self.report("render", "h.h5", "--show", "temperature", "--samples", "1", *view, "-o", "p.exr")
+        seen = np.unique(ExrFile(self.folder / "p.exr").channels["temperature"][5:-5, 5:-5])
+        self.assertTrue(set(seen) <= set(stored["temperature"][upper].astype(np.float32)))
+
+    def test_a_scene_without_heat_has_none_to_show(self):
+        self.run_program("mesh", "plates.obj", "--patches", "20", "-o", "m.h5")
+        self.refuse("render", "m.h5", "--show", "temperature", "-o", "p.png",
+                    words=["m.h5: has no heat to show", "radiosity heat"])
+
     def test_an_adiabatic_room_has_the_temperature_of_its_one_warm_wall(self):
         report = self.heat("box.obj", "--thermal", "walls.csv", "--patches", "60", "--closure",
                            "enforce", "--precision", "double")
@@ -94,7 +121,7 @@ class Heat(CliTest):
         with h5py.File(self.folder / "x.h5") as file:
             heat, area = file["heat"], file["mesh/area"][()]
             names = file["mesh/surface_names"][()]
-            surface = file["mesh/surface"][()]
+            surface = file["form_factors/surface"][()]
             np.testing.assert_allclose([float(p["temperature_K"]) for p in patches],
                                        heat["temperature"][()], rtol=1e-15)
             self.assertEqual(heat["temperature"].attrs["unit"], b"K")

@@ -13,6 +13,7 @@ import unittest
 import h5py
 import numpy as np
 import scipy.sparse
+from PIL import Image
 
 from cli_runner import DATA, HAS_PAGES, PROGRAM, CliTest, limit
 
@@ -147,11 +148,14 @@ class Pages(CliTest):
         self.run_program("view", "box.obj", *BOX, *run, "-o", "p.html", "-o", "kept box.h5")
         self.assertEqual(self.page("p.html").header["arguments"], "'kept box.h5'")
 
-    def test_heat_of_a_results_file_is_on_its_page_also_without_light(self):
+    def heat_of_plates(self):
         self.write("plates.obj", "o floor\nv 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nf 4 3 2 1\n"
                                  "o plate\nv 0 1 0\nv 2 1 0\nv 2 1 2\nv 0 1 2\nf 5 6 7 8\n")
         self.run_program("heat", "plates.obj", *BOX, "--condition", "*.emissivity=.9", "--condition",
                          "floor.flux=100", "--condition", "plate.temperature=300", "-o", "s.h5")
+
+    def test_heat_of_a_results_file_is_on_its_page_also_without_light(self):
+        self.heat_of_plates()
         self.run_program("view", "s.h5", "-o", "p.html")
         page = self.page("p.html")
         with h5py.File(self.folder / "s.h5") as file:
@@ -161,6 +165,16 @@ class Pages(CliTest):
             for name in ("irradiance", "radiosity"):
                 np.testing.assert_allclose(page["heat_" + name], heat[name][()].sum(1), rtol=1e-6)
         self.assertEqual([s["name"] for s in page.header["heat"]["surfaces"]], ["floor", "plate"])
+
+    def test_the_thumbnail_of_heat_shows_its_temperatures(self):
+        self.heat_of_plates()
+        view = ["--camera", "eye=3,3,4;target=1,.5,1;up=0,1,0;fov=40"]
+        self.run_program("view", "s.h5", *view, "--gallery", "all")
+        self.run_program("render", "s.h5", *view, "--show", "temperature", "--width", "480", "--height", "360",
+                         "-o", "t.png")
+        small, drawn = (np.asarray(Image.open(self.folder / name).convert("RGB")) for name in ("all/s.png", "t.png"))
+        np.testing.assert_array_equal(small, drawn)
+        self.assertGreater(len(np.unique(small.reshape(-1, 3), axis=0)), 20)
 
     def test_a_gallery_has_an_index_of_its_pages_with_thumbnails(self):
         (self.folder / "a & b.obj").write_text((self.folder / "box.obj").read_text())

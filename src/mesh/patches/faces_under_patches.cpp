@@ -26,17 +26,6 @@ Value between(const FlatTriangle& triangle, const std::array<Value, 3>& value, c
   return value[0] + second * (value[1] - value[0]) + third * (value[2] - value[0]);
 }
 
-/// The part of a piece of the patch that lies in `triangle`.
-std::vector<Vec2> partIn(const FlatTriangle& triangle, std::vector<Vec2> piece) {
-  std::vector<Vec2> scratch;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec2& a = triangle.p[k];
-    const Vec2 along = triangle.p[(k + 1) % 3] - a;
-    clipLoop(piece, scratch, [&](const Vec2& p) { return cross2(along, p - a); });
-  }
-  return piece;
-}
-
 }  // namespace
 
 VaryingSurfaces::VaryingSurfaces(const Scene& scene)
@@ -59,6 +48,16 @@ Vec2 FlatTriangle::map(const Vec2& q) const { return between(*this, uv, q); }
 
 Vec3 FlatTriangle::colourAt(const Vec2& q) const {
   return glm::clamp(between(*this, colour, q), 0.0, 1.0);
+}
+
+std::vector<Vec2> FlatTriangle::partOf(std::vector<Vec2> polygon) const {
+  std::vector<Vec2> scratch;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec2& a = p[k];
+    const Vec2 along = p[(k + 1) % 3] - a;
+    clipLoop(polygon, scratch, [&](const Vec2& q) { return cross2(along, q - a); });
+  }
+  return polygon;
 }
 
 /// A face seen along a patch's normal: its distance from the patch's plane.
@@ -110,11 +109,14 @@ bool FacesUnderPatches::varies(std::size_t i) const {
   return mesh_.side[i] == 0 && mesh_.area[i] > 0 && varying_.at(mesh_.surface[i]);
 }
 
+PlaneFrame FacesUnderPatches::frameOf(std::size_t i) const {
+  return makeFrame(mesh_.centroid[i], mesh_.normal[i], axisAcross(mesh_.normal[i]));
+}
+
 double FacesUnderPatches::forParts(
     std::size_t i, bool coloured,
     const std::function<void(const FlatTriangle&, const std::vector<Vec2>&, double)>& visit) const {
-  const PlaneFrame frame =
-      makeFrame(mesh_.centroid[i], mesh_.normal[i], axisAcross(mesh_.normal[i]));
+  const PlaneFrame frame = frameOf(i);
   double covered = 0;
   for (const Candidate& candidate : nearestFirst(i, frame)) {
     for (const FlatTriangle& triangle : flattened(candidate.face, coloured, frame)) {
@@ -122,7 +124,7 @@ double FacesUnderPatches::forParts(
         std::vector<Vec2> piece;
         piece.reserve(3);
         for (const Index v : mesh_.pieces[t]) piece.push_back(frame.flat(mesh_.vertices[v]));
-        const std::vector<Vec2> part = partIn(triangle, std::move(piece));
+        const std::vector<Vec2> part = triangle.partOf(std::move(piece));
         const double area = polygonArea(part);
         if (!(area > 0)) continue;
         visit(triangle, part, area);

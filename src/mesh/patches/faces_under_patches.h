@@ -31,6 +31,8 @@ struct FlatTriangle {
   Vec2 map(const Vec2& q) const;
   /// Within 0 and 1, which rounding at an edge of the triangle would leave.
   Vec3 colourAt(const Vec2& q) const;
+  /// The part of a convex polygon that lies in the triangle.
+  std::vector<Vec2> partOf(std::vector<Vec2> polygon) const;
 };
 
 /// Finds the faces under front patches whose materials vary. Keeps references to scene and mesh.
@@ -45,6 +47,8 @@ class FacesUnderPatches {
   /// Metres from patch i within which its faces are looked for: rounding or welding may separate
   /// them.
   double reachOf(std::size_t i) const;
+  /// The frame of patch i, which FlatTriangle and parts are in.
+  PlaneFrame frameOf(std::size_t i) const;
   /// Calls visit(triangle, part, area) for the parts of patch i that lie in triangles of faces,
   /// those of the nearest faces first, until they cover the patch: `part` is a convex polygon in
   /// the patch's frame. Triangles have their colours if `coloured`. Returns the area of all parts.

@@ -69,7 +69,18 @@ std::vector<float> transposed(std::span<const float> pixels, long width, long he
   return result;
 }
 
+std::vector<float> halvedTexels(std::span<const float> texels, long width, long height) {
+  const long half = std::max(1L, width / 2);
+  const std::vector<float> turned = transposed(halveRows(texels, width, height), half, height);
+  return transposed(halveRows(turned, height, half), std::max(1L, height / 2), half);
+}
+
 }  // namespace
+
+Texture halved(const Texture& texture) {
+  return {texture.name, std::max(1, texture.width / 2), std::max(1, texture.height / 2),
+          halvedTexels(texture.texels, texture.width, texture.height), texture.repeat};
+}
 
 TextureMean::TextureMean(const Texture& texture) : texture_(texture) {
   levels_.push_back({texture.width, texture.height, {}});
@@ -78,10 +89,7 @@ TextureMean::TextureMean(const Texture& texture) : texture_(texture) {
     const std::vector<float>& pixels = last.halved.empty() ? texture.texels : last.halved;
     const long width = std::max(1L, last.width / 2);
     const long height = std::max(1L, last.height / 2);
-    const std::vector<float> narrow = halveRows(pixels, last.width, last.height);
-    const std::vector<float> turned = transposed(narrow, width, last.height);
-    std::vector<float> halved = transposed(halveRows(turned, last.height, width), height, width);
-    levels_.push_back({width, height, std::move(halved)});
+    levels_.push_back({width, height, halvedTexels(pixels, last.width, last.height)});
   }
 }
 

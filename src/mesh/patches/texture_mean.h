@@ -8,6 +8,9 @@
 
 namespace radiosity {
 
+/// Half as wide and as high (at least 1); texels are the means of those that they cover.
+Texture halved(const Texture& texture);
+
 /// A texture of texels with constant colour, with box-filtered half-size versions.
 class TextureMean {
  public:

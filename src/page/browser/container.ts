@@ -15,6 +15,17 @@ export interface MaterialInfo {
   emission: Rgb; // exitance, W/m^2
   textured: boolean;
   factor: Rgb; // reflectance that its texture multiplies; without one it is `reflectance`
+  emission_factor: Rgb; // likewise
+  texture?: number | null; // of reflectance, of the header's textures
+  emission_texture?: number | null;
+}
+
+export interface TextureInfo {
+  name: string;
+  width: number;
+  height: number;
+  repeat: boolean;
+  scale: number; // multiplies its texels
 }
 
 /** Of a surface: K, W/m^2, W; null: undetermined. */
@@ -73,6 +84,7 @@ export interface Header {
     largest_row_error: number;
   };
   heat?: { message: string; surfaces: SurfaceHeat[] };
+  textures?: TextureInfo[];
   element_lamps: { material?: number; light?: number }[]; // whose direct light elements have by itself
   arrays: Record<string, { type: string; offset: number; length: number }>;
 }
@@ -117,6 +129,9 @@ export interface PageData {
   elementPatch: Uint32Array; // Q: a patch with its material
   /** Q*3 of each of `element_lamps`: its direct share of the irradiance, of 65535. */
   elementShare: Uint16Array[];
+  elementPlace: Float32Array; // Q*2, texture coordinates; empty: no material varies
+  elementColour: Uint16Array; // Q*3, of 65535, multiplies the reflectance; empty: none has colours of vertices
+  texture: Uint8Array[]; // rows of red, green, blue: sRGB, each less the one to its left
 }
 
 const MAGIC = "RADPAGE1";
@@ -195,6 +210,12 @@ function check(data: PageData): void {
   requireLength("element_irradiance", data.elementIrradiance, data.elementPosition.length);
   requireLength("element_patch", data.elementPatch, data.elementPosition.length / 3);
   for (const share of data.elementShare) requireLength("element_share", share, data.elementPosition.length);
+  if (data.elementPlace.length > 0) requireLength("element_texture_place", data.elementPlace, 2 * data.elementPatch.length);
+  if (data.elementColour.length > 0) requireLength("element_colour", data.elementColour, data.elementPosition.length);
+  const textures = data.header.textures ?? [];
+  textures.forEach(({ width, height }, t) => requireLength(`texture_${t}`, data.texture[t]!, 3 * width * height));
+  const used = data.header.materials.flatMap((m) => [m.texture, m.emission_texture]).filter((t) => typeof t === "number");
+  requireBelow("materials", used, textures.length);
   requireBelow("element_patch", data.elementPatch, n);
   requireBelow("patch_triangle", data.patchTriangle, data.position.length / 3);
   requireBelow("triangle_patch", data.trianglePatch, n);
@@ -254,6 +275,9 @@ export function readContainer(buffer: ArrayBuffer): PageData {
     elementIrradiance: f32("element_irradiance"),
     elementPatch: u32("element_patch"),
     elementShare: header.element_lamps.map((_, k) => view(buffer, header, `element_share_${k}`, "u16")),
+    elementPlace: optional("element_texture_place"),
+    elementColour: "element_colour" in header.arrays ? view(buffer, header, "element_colour", "u16") : new Uint16Array(0),
+    texture: (header.textures ?? []).map((_, t) => view(buffer, header, `texture_${t}`, "u8")),
   };
   check(data);
   return data;

@@ -2,6 +2,7 @@
 // at their vertices, and is multiplied as its slider says. All else there changes as it does for the patches around.
 import type { PageData, Rgb } from "./container";
 import { addTimes, shadingValues, type Factors, type PatchLight } from "./light";
+import { varyingMaterials } from "./textures";
 
 const BANDS = 3;
 const WHOLE = 65535; // of a share
@@ -38,9 +39,11 @@ export class FineLight {
   private readonly rest: Float32Array; // Q*3: what is not in shares
   private readonly then: Float32Array; // of shading vertices: likewise, of patches
   private readonly little: Rgb;
+  private readonly varying: boolean[]; // materials
 
   constructor(private readonly data: PageData, private readonly stored: PatchLight) {
     const { elementIrradiance, elementPatch, elementShare, header } = data;
+    this.varying = varyingMaterials(data);
     this.rest = elementIrradiance.slice();
     for (const share of elementShare) {
       for (let k = 0; k < this.rest.length; ++k) {
@@ -60,7 +63,7 @@ export class FineLight {
     this.prepared = true;
   }
 
-  /** The radiosity of element vertices in the stored light, Q*3. */
+  /** The light of element vertices in the stored light, Q*3. */
   before(): Float32Array { return this.radiosity(this.stored, this.data.elementIrradiance.slice()); }
 
   /** The same for a solution of patches and its lamps. */
@@ -102,12 +105,17 @@ export class FineLight {
     return rest;
   }
 
-  /** Turns irradiance into radiosity, in place. */
+  /**
+   * Turns irradiance into radiosity, in place. Where textures or colours of vertices multiply it, it stays irradiance,
+   * times what a slider does to the reflectance.
+   */
   private radiosity(light: PatchLight, values: Float32Array): Float32Array {
-    const { elementPatch } = this.data;
+    const { elementPatch, surface, header, reflectance } = this.data;
     for (let at = 0; at < values.length; ++at) {
-      const b = at % BANDS, of = elementPatch[(at - b) / BANDS]! * BANDS + b;
-      values[at] = light.emission[of]! + light.reflectance[of]! * values[at]!;
+      const b = at % BANDS, patch = elementPatch[(at - b) / BANDS]!, of = patch * BANDS + b;
+      const now = light.reflectance[of]!, then = reflectance[of]!;
+      if (!this.varying[header.surfaces[surface[patch]!]!.material]) values[at] = light.emission[of]! + now * values[at]!;
+      else if (then > 0) values[at] = (values[at]! * now) / then;
     }
     return values;
   }

@@ -7,7 +7,8 @@ import type { Viewer } from "./viewer";
 
 /** Ids, in the order in which they are set. */
 const CONTROLS = [
-  "exposure", "tone", "outlines", "elements", "before-after", "split", "paint", "pick-first", "pick-second", "show"];
+  "exposure", "tone", "outlines", "elements", "before-after", "split", "paint", "pick-first", "pick-second", "surface-first", "surface-second",
+  "show"];
 /** Names of radio buttons. */
 const CHOICES = ["surfaces", "move"];
 const QUIET_MS = 300; // browsers allow so many changes of the address a second

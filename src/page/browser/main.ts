@@ -11,6 +11,7 @@ import { inspecting, pickAt, setUpPatch } from "./patch_panel";
 import { RelightPanel } from "./relight_panel";
 import { setUpShare } from "./share_panel";
 import { SETTLED_MS } from "./stage";
+import { setUpSurfacePair } from "./surface_pair";
 import { Tour } from "./tour";
 import { copy, counted, element, make, on, onChoice, short } from "./ui";
 import { Viewer } from "./viewer";
@@ -50,6 +51,8 @@ function sayAbout(viewer: Viewer): void {
     ["16-bit form factors: error of each, at most", percent(q.largest_relative_error)],
     ["…of a row, at most", short(q.largest_row_error)],
   ];
+  const texels = (header.textures ?? []).reduce((sum, { width, height }) => sum + width * height, 0);
+  if (texels > 0) rows.push(["Textures", `${header.textures!.length}, ${counted(texels)} texels`]);
   if (!viewer.clustered) rows.push(["Stored light against these form factors", percent(viewer.agreement)]);
   element("about").replaceChildren(...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
   if (viewer.clustered) {
@@ -86,6 +89,7 @@ function setUpCamera(viewer: Viewer): void {
 function setUpPanels(viewer: Viewer): void {
   setUpLook(viewer);
   setUpPatch(viewer);
+  setUpSurfacePair(viewer);
   setUpHeat(viewer);
   const converge = new ConvergePanel(viewer);
   const relight = new RelightPanel(viewer, () => converge.forget());

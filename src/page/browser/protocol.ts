@@ -21,6 +21,7 @@ export interface Load {
 export type Request =
   | ({ kind: "load" } & Load)
   | { kind: "rows"; ticket: number; nodes: number[] }
+  | { kind: "product"; ticket: number; values: Float32Array } // F x
   | { kind: "warm" }
   | { kind: "relight"; ticket: number; materials: Materials | null; milliseconds: number } // null: go on
   | { kind: "start"; run: number; method: Method; materials: Materials }
@@ -40,6 +41,7 @@ export interface Frame {
 export type Reply =
   | { kind: "loaded"; entries: number; agreement: number; reference: Float32Array | null }
   | { kind: "rows"; ticket: number; rows: Float32Array[] }
+  | { kind: "product"; ticket: number; values: Float32Array }
   | { kind: "relit"; ticket: number; irradiance: Float32Array; products: number; residual: number;
       converged: boolean; milliseconds: number }
   | ({ kind: "frame" } & Frame)

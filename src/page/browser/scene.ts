@@ -3,7 +3,8 @@ import {
   BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Group, LineSegments, Mesh,
 } from "three";
 import type { PageData } from "./container";
-import { cornerValues } from "./light";
+import { cornerValues, type PatchLight } from "./light";
+import { emissionOfVertices, sortedTriangles, textureGroups, tints, type TextureGroup } from "./textures";
 import { elementMaterial, lineMaterial, patchMaterial, type Uniforms } from "./shading";
 
 export type Surfaces = "smooth" | "flat" | "wireframe";
@@ -20,6 +21,7 @@ export class SceneMeshes {
 
   private readonly patches: Mesh<BufferGeometry>;
   private readonly elements: Mesh;
+  private readonly textured: boolean; // elements have textures
   private readonly lines: LineSegments;
   private readonly lineUniforms;
   private light: { now: Float32Array; before: Float32Array };
@@ -30,7 +32,9 @@ export class SceneMeshes {
     this.light = { now: none, before: none };
     this.values = { now: none, before: none, smooth: false };
     this.patches = new Mesh(this.patchGeometry(), patchMaterial(uniforms));
-    this.elements = new Mesh(this.elementGeometry(), elementMaterial(uniforms));
+    const groups = textureGroups(data);
+    this.textured = groups.some(({ textures }) => textures);
+    this.elements = new Mesh(this.elementGeometry(groups), groups.map(({ textures }) => elementMaterial(uniforms, textures)));
     this.hasElements = data.elementTriangle.length > 0;
     const lines = lineMaterial(new Color(0, 0, 0), 0.55);
     this.lineUniforms = lines.uniforms;
@@ -45,13 +49,13 @@ export class SceneMeshes {
     this.fill("lightBefore", before, 3, this.surfaces === "smooth");
   }
 
-  /** Radiosity of element vertices, now and before. */
-  setElementLight(now: Float32Array, before: Float32Array): void {
-    for (const [name, values] of [["light", now], ["lightBefore", before]] as const) {
-      const attribute = this.elements.geometry.getAttribute(name) as BufferAttribute;
-      (attribute.array as Float32Array).set(values);
-      attribute.needsUpdate = true;
-    }
+  /** Light of element vertices, now and before, as FineLight has it, and the light of patches whose emission is theirs. */
+  setElementLight(now: Float32Array, before: Float32Array, of: PatchLight, ofBefore: PatchLight): void {
+    this.setElements("light", now);
+    this.setElements("lightBefore", before);
+    if (!this.textured) return;
+    this.setElements("own", emissionOfVertices(this.data, of));
+    this.setElements("ownBefore", emissionOfVertices(this.data, ofBefore));
   }
 
   /** Sets the values for false colour, N, now and before; `smooth`: they may be interpolated. */
@@ -98,6 +102,12 @@ export class SceneMeshes {
     return Float32Array.from([...edges.values()].flatMap(([a, b]) => [...at(a), ...at(b)]));
   }
 
+  private setElements(name: string, values: Float32Array): void {
+    const attribute = this.elements.geometry.getAttribute(name) as BufferAttribute;
+    (attribute.array as Float32Array).set(values);
+    attribute.needsUpdate = true;
+  }
+
   private fill(name: string, values: Float32Array, bands: number, smooth: boolean): void {
     const attribute = this.patches.geometry.getAttribute(name) as BufferAttribute;
     cornerValues(this.data, values, bands, smooth, attribute.array as Float32Array);
@@ -115,12 +125,22 @@ export class SceneMeshes {
     return geometry;
   }
 
-  private elementGeometry(): BufferGeometry {
+  private elementGeometry(groups: TextureGroup[]): BufferGeometry {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(this.data.elementPosition, 3));
     const count = this.data.elementPatch.length;
     for (const name of ["light", "lightBefore"]) geometry.setAttribute(name, dynamic(count, 3));
-    geometry.setIndex(new BufferAttribute(this.data.elementTriangle, 1));
+    if (this.textured) {
+      for (const name of ["own", "ownBefore"]) geometry.setAttribute(name, dynamic(count, 3));
+      geometry.setAttribute("tint", new BufferAttribute(tints(this.data), 3));
+      geometry.setAttribute("place", new BufferAttribute(this.data.elementPlace, 2));
+    }
+    geometry.setIndex(sortedTriangles(this.data, groups));
+    let begin = 0;
+    groups.forEach(({ triangles }, k) => {
+      geometry.addGroup(begin, 3 * triangles.length, k);
+      begin += 3 * triangles.length;
+    });
     return geometry;
   }
 

@@ -58,6 +58,9 @@ export class Session {
     return nodes.map((i) => denseRow(this.factors, i));
   }
 
+  /** F x of single values, K * 3. */
+  product(x: Float32Array): Float32Array { return Float32Array.from(this.multiply(Float64Array.from(x))); }
+
   /** Solves for the light of `materials` from the last light for about this time; null: continues. */
   relight(materials: Materials | null, milliseconds: number): Omit<Reply & { kind: "relit" }, "ticket"> {
     const began = performance.now();

@@ -91,10 +91,16 @@ export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
   });
 }
 
-/** The mesh of elements; attributes light, lightBefore. */
-export function elementMaterial(uniforms: Uniforms): ShaderMaterial {
+/**
+ * The mesh of elements; attributes light, lightBefore. With textures, light is what these and `tint` multiply, and
+ * `own`, `ownBefore` are emission; `place`: texture coordinates.
+ */
+export function elementMaterial(
+  uniforms: Uniforms, textures: { texels: DataTexture; emissionTexels: DataTexture } | null): ShaderMaterial {
+  const own = textures ? { texels: { value: textures.texels }, emissionTexels: { value: textures.emissionTexels } } : {};
   return new ShaderMaterial({
-    uniforms,
+    uniforms: { ...uniforms, ...own },
+    defines: textures ? { TEXTURED: "" } : {},
     toneMapped: false,
     polygonOffset: true,
     polygonOffsetFactor: 1,
@@ -103,14 +109,35 @@ export function elementMaterial(uniforms: Uniforms): ShaderMaterial {
       attribute vec3 light, lightBefore;
       uniform bool before;
       varying vec3 vLight;
+      #ifdef TEXTURED
+        attribute vec3 tint, own, ownBefore;
+        attribute vec2 place;
+        varying vec3 vTint, vOwn;
+        varying vec2 vPlace;
+      #endif
       void main() {
         vLight = before ? lightBefore : light;
+        #ifdef TEXTURED
+          vTint = tint;
+          vOwn = before ? ownBefore : own;
+          vPlace = place;
+        #endif
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: /* glsl */ `
       ${DISPLAY}
       varying vec3 vLight;
-      void main() { gl_FragColor = vec4(display(vLight), 1.0); }`,
+      #ifdef TEXTURED
+        uniform sampler2D texels, emissionTexels;
+        varying vec3 vTint, vOwn;
+        varying vec2 vPlace;
+        vec3 radiosity() {
+          return vOwn * texture2D(emissionTexels, vPlace).rgb + vTint * texture2D(texels, vPlace).rgb * vLight;
+        }
+      #else
+        vec3 radiosity() { return vLight; }
+      #endif
+      void main() { gl_FragColor = vec4(display(radiosity()), 1.0); }`,
   });
 }
 

@@ -9,7 +9,8 @@ const POSTER = 2; // times the picture's width and height
 
 /** Of what the program draws of patches. */
 const SHOWN: Partial<Record<Show, string>> = {
-  "radiosity": "radiosity", "irradiance": "irradiance", "row-sum": "row-sum", "factors": "form-factor:" };
+  "radiosity": "radiosity", "irradiance": "irradiance", "row-sum": "row-sum", "factors": "form-factor:",
+  "temperature": "temperature", "net-flux": "net-flux", "heat-irradiance": "heat-irradiance" };
 
 const precise = (x: number): string => String(Number(x.toPrecision(6)));
 

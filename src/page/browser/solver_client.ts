@@ -28,6 +28,7 @@ export class SolverClient {
   private readonly worker: Worker;
   private loaded: ((reply: Loaded) => void) | null = null;
   private readonly rowTickets = new Map<number, (rows: Float32Array[]) => void>();
+  private readonly productTickets = new Map<number, (values: Float32Array) => void>();
   private tickets = 0;
   private wanted: Materials | null = null; // newer than those of the present relight
   private relighting = false;
@@ -55,6 +56,15 @@ export class SolverClient {
     return new Promise((resolve) => {
       this.rowTickets.set(ticket, resolve);
       this.send({ kind: "rows", ticket, nodes });
+    });
+  }
+
+  /** F x, K * 3. */
+  product(values: Float32Array): Promise<Float32Array> {
+    const ticket = ++this.tickets;
+    return new Promise((resolve) => {
+      this.productTickets.set(ticket, resolve);
+      this.send({ kind: "product", ticket, values });
     });
   }
 
@@ -110,6 +120,11 @@ export class SolverClient {
       case "rows": {
         this.rowTickets.get(reply.ticket)?.(reply.rows);
         this.rowTickets.delete(reply.ticket);
+        return;
+      }
+      case "product": {
+        this.productTickets.get(reply.ticket)?.(reply.values);
+        this.productTickets.delete(reply.ticket);
         return;
       }
       case "relit":

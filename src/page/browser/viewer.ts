@@ -54,7 +54,7 @@ export class Viewer {
   private readonly maps = { rising: this.uniforms.map.value, diverging: mapTexture(redBlue) };
   private readonly tree: TriangleTree;
   private readonly fine: FineLight;
-  private readonly fineStored: Float32Array; // radiosity of element vertices
+  private readonly fineStored: Float32Array; // light of element vertices
   private reference: StoredLight | null = null; // where nodes are clusters of patches
   private direct: Float32Array; // N*3, with the present lamps: directIrradiance()
   private lamps: Float32Array; // N*3, likewise: lampIrradiance()
@@ -319,9 +319,9 @@ export class Viewer {
 
   private refreshLight(): void {
     this.meshes.setLight(radiosityOf(this.light), radiosityOf(this.before));
-    if (this.source === "stored") this.meshes.setElementLight(this.fineStored, this.fineStored);
+    if (this.source === "stored") this.meshes.setElementLight(this.fineStored, this.fineStored, this.stored, this.stored);
     if (this.source === "relit") {
-      this.meshes.setElementLight(this.fine.of(this.light, this.factors), this.fineStored);
+      this.meshes.setElementLight(this.fine.of(this.light, this.factors), this.fineStored, this.light, this.stored);
     }
     this.refreshValues();
     this.tell("light");

@@ -20,6 +20,8 @@ function answer(request: Request): Reply | null {
   switch (request.kind) {
     case "rows":
       return { kind: "rows", ticket: request.ticket, rows: session.rows(request.nodes) };
+    case "product":
+      return { kind: "product", ticket: request.ticket, values: session.product(request.values) };
     case "warm":
       session.warm();
       return null;

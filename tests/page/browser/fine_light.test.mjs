@@ -14,6 +14,22 @@ after(() => browser?.close());
 const blocksOff = (mine, theirs) =>
   Number(execFileSync("/usr/bin/python3", [join(process.env.PAGE_ROOT, "tests/page/browser/blocks.py"), mine, theirs]));
 
+/** Opens a page with a link, and tells how far its picture is from that of its command. */
+async function pictureOff(file, name, link) {
+  const { page, said } = await open(browser, file, { viewport: { width: 940, height: 658 } }, link);
+  if (link.includes(":")) {
+    await page.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
+  }
+  await page.evaluate(() => document.getElementById("share-panel").setAttribute("open", ""));
+  await page.waitForTimeout(500);
+  const mine = await saved(page, "#save-picture");
+  const [theirs, command] = await commandPicture(page, `${name}-blocks.png`);
+  assert.doesNotMatch(command, /--elements off/);
+  assert.deepEqual(said, []);
+  await page.close();
+  return blocksOff(mine, theirs);
+}
+
 // Pictures of 8 bits, with other anti-aliasing, of the same light are .3% apart.
 test("the picture after sliders is that of render --set, to .5% of blocks", async (t) => {
   for (const [name, link] of [
@@ -22,21 +38,22 @@ test("the picture after sliders is that of render --set, to .5% of blocks", asyn
     ["white", "&reflectance:white=.3,.3,.3"],
     ["both", "&reflectance:white=.6,.6,.6&emission:light=20,10,40"],
   ]) {
-    const { page, said } = await open(browser, "cornell.html", { viewport: { width: 940, height: 658 } },
-      `#exposure=0${link}`);
-    if (link) {
-      await page.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
-    }
-    await page.evaluate(() => document.getElementById("share-panel").setAttribute("open", ""));
-    await page.waitForTimeout(500);
-    const mine = await saved(page, "#save-picture");
-    const [theirs, command] = await commandPicture(page, `${name}-blocks.png`);
-    assert.doesNotMatch(command, /--elements off/);
-    const off = blocksOff(mine, theirs);
+    const off = await pictureOff("cornell.html", name, `#exposure=0${link}`);
     t.diagnostic(`${name}: blocks are ${(100 * off).toFixed(2)}% off`);
     assert.ok(off < 5e-3, `${name}: ${off}`);
-    assert.deepEqual(said, []);
-    await page.close();
+  }
+});
+
+// Texel by texel: with means of patches, blocks of the tiles are tens of percents off.
+test("textures are drawn as render draws them, also after sliders", async (t) => {
+  for (const [name, link] of [
+    ["tiles", ""],
+    ["tinted", "&reflectance:tiles=.3,.5,.4&emission:lamp=10,10,20"],
+  ]) {
+    const view = "#exposure=-1&eye=1,1.6,2.2&target=1,0,1"; // without the sky, which the page shows darker
+    const off = await pictureOff("textured.html", name, `${view}${link}`);
+    t.diagnostic(`${name}: blocks are ${(100 * off).toFixed(2)}% off`);
+    assert.ok(off < 5e-3, `${name}: ${off}`);
   }
 });
 

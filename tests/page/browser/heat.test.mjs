@@ -57,3 +57,33 @@ test("a picked patch has its temperature, two have their net exchange A F (J - J
   assert.ok(Math.abs(shown - expected) <= 3e-4 * Math.abs(expected), `${shown}, not ${expected}`);
   assert.deepEqual(said, []);
 });
+
+test("two surfaces have their form factors both ways, and their net exchange", async () => {
+  const truth = results("heat.h5");
+  const names = await page.locator("#surface-first option").allTextContents();
+  const of = ["ceiling", "floor"].map((part) => names.findIndex((name) => name.includes(part)) - 1);
+  assert.ok(of.every((k) => k >= 0) && of[0] !== of[1], String(names));
+  await page.locator("#surface-first").selectOption(String(of[0]));
+  await page.locator("#surface-second").selectOption(String(of[1]));
+  const value = async (label) =>
+    Number(await page.locator(`#surface-pair dt:text-is("${label}") + dd data`).getAttribute("value"));
+  const patches = of.map((k) => truth.surface.flatMap((s, i) => (s === k ? [i] : [])));
+  const sum = (from, to, of) =>
+    from.reduce((all, i) => all + to.reduce((row, j) => row + truth.area[i] * truth.factors[i][j] * of(i, j), 0), 0);
+  const areas = patches.map((list) => list.reduce((all, i) => all + truth.area[i], 0));
+  const expected = {
+    "F there": sum(patches[0], patches[1], () => 1) / areas[0],
+    "F back": sum(patches[1], patches[0], () => 1) / areas[1],
+    "Area of the first, m²": areas[0],
+    "Area of the second, m²": areas[1],
+    "Net heat there, W": sum(patches[0], patches[1], (i, j) => truth.radiosity[i] - truth.radiosity[j]),
+  };
+  for (const [label, x] of Object.entries(expected)) {
+    assert.ok(x !== 0);
+    // Form factors have 16 bits: 3e-4.
+    const shown = await value(label);
+    assert.ok(Math.abs(shown - x) <= 3e-4 * Math.abs(x), `${label}: ${shown}, not ${x}`);
+  }
+  assert.ok((await value("Reciprocity, difference")) < 1e-5); // of single precision
+  assert.deepEqual(said, []);
+});

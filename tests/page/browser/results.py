@@ -37,6 +37,7 @@ def main():
             out = {name: heat[name][()].ravel().tolist() for name in ("temperature", "radiosity", "net_flux")}
             out["area"] = file["form_factors/area"][()].tolist()
             out["factors"] = dense_matrix(file["form_factors"]).tolist()
+            out["surface"] = file["form_factors/surface"][()].tolist()
             json.dump(out, sys.stdout)
             return
         light = file["solution"]
