@@ -11,7 +11,7 @@ const BATCH_MS = 16; // of a frame of 33 ms; the picture and the panels need the
 // In software a frame of the page costs as much as ten eyes. So it is only drawn if something
 // changes, and then waits for a batch.
 const SOFTWARE_BATCH_MS = 60;
-const SOFTWARE_PROGRESS_MS = 500;
+const PROGRESS_MS = 200, SOFTWARE_PROGRESS_MS = 800; // between pictures of what has been gathered so far
 
 export interface GatherState {
   pass: number; // passes that are complete
@@ -25,7 +25,8 @@ export class Gather {
   weight = NaN; // the sum of all weights at an eye, farthest from 1
   /** `irradiance` of patches, N*3, after each pass. */
   onPass: (irradiance: Float32Array) => void = () => {};
-  onProgress: () => void = () => {};
+  /** The same with what eyes of this pass have seen so far, and the last of them: its hemicube, GatherGpu.strip(). */
+  onProgress: (irradiance: Float32Array, eye: number, strip: Float32Array) => void = () => {};
   onFailure: (error: Error) => void = () => {};
   /** In software, gathering waits while the viewer moves. */
   viewerMoves: () => boolean = () => false;
@@ -87,24 +88,42 @@ export class Gather {
     this.batch.took(looks, performance.now() - begin);
     this.state.eyes += looks;
     const ended = this.state.eyes === this.eyes.count;
+    const due = performance.now() - this.told > (this.gpu.software ? SOFTWARE_PROGRESS_MS : PROGRESS_MS);
+    if (due && !ended) await this.tell(looks);
     if (ended) await this.endPass();
-    const now = performance.now();
-    const due = ended || !this.gpu.software || now - this.told > SOFTWARE_PROGRESS_MS;
-    if (this.closed || !due) return;
-    this.told = now;
-    this.onProgress();
+  }
+
+  /** Tells what has been gathered; `looks`: of the last batch. */
+  private async tell(looks: number): Promise<void> {
+    const first = this.state.eyes - looks;
+    let k = looks - 1;
+    while (k > 0 && !this.looks(first + k)) --k;
+    const strip = await this.gpu.strip(k);
+    const irradiance = this.irradiance(await this.gpu.read());
+    if (this.closed) return;
+    this.onProgress(this.eyes.patches(irradiance), first + k, strip);
+    this.told = performance.now();
+  }
+
+  private looks(eye: number): boolean { return Math.hypot(...this.eyes.normal(eye)) > 0; }
+
+  /** Of eyes, G*3. */
+  private irradiance(received: Float32Array): Float32Array {
+    const irradiance = new Float32Array(this.eyes.count * BANDS);
+    for (let eye = 0; eye < this.eyes.count; ++eye) {
+      if (this.looks(eye)) irradiance.set(received.subarray(4 * eye, 4 * eye + BANDS), eye * BANDS);
+    }
+    return irradiance;
   }
 
   private async endPass(): Promise<void> {
     const received = await this.gpu.read();
     if (this.closed) return;
-    const irradiance = new Float32Array(this.eyes.count * BANDS);
+    const irradiance = this.irradiance(received);
     this.weight = 1;
     for (let eye = 0; eye < this.eyes.count; ++eye) {
-      if (Math.hypot(...this.eyes.normal(eye)) === 0) continue;
       const weight = received[4 * eye + 3]!;
-      if (Math.abs(weight - 1) > Math.abs(this.weight - 1)) this.weight = weight;
-      irradiance.set(received.subarray(4 * eye, 4 * eye + BANDS), eye * BANDS);
+      if (this.looks(eye) && Math.abs(weight - 1) > Math.abs(this.weight - 1)) this.weight = weight;
     }
     const { emission, reflectance } = this.materials;
     this.gpu.setLight(this.eyes.corners(emission.map((e, k) => e + reflectance[k]! * irradiance[k]!)));

@@ -48,7 +48,7 @@ export class GatherGpu {
   private brightest = 0;
 
   /** Throws an Error with one sentence if the browser cannot gather. */
-  constructor(private readonly data: PageData, private readonly eyes: Eyes, private readonly resolution: number) {
+  constructor(private readonly data: PageData, private readonly eyes: Eyes, readonly resolution: number) {
     const gl = document.createElement("canvas").getContext("webgl2", { antialias: false, depth: false, alpha: false });
     if (!gl) throw new Error("Gathering needs WebGL 2, which this browser does not offer.");
     if (!gl.getExtension("EXT_color_buffer_float")) {
@@ -105,22 +105,33 @@ export class GatherGpu {
     if (!(await drawn(this.gl))) throw new Error("The GPU gave up on gathering; start again.");
   }
 
-  /** The results of every eye, G*4: irradiance, and the sum of its weights. */
+  /** The results of every eye, G*4: irradiance, and the sum of its weights; of eyes to come those of the pass before. */
   async read(): Promise<Float32Array> {
+    const values = await this.pixels(this.result, [0, 0, RESULT_WIDTH, this.resultRows]);
+    return values.subarray(0, this.eyes.count * 4);
+  }
+
+  /** The strip of look k of the last batch: rows of `resolution` pixels of four floats. */
+  strip(k: number): Promise<Float32Array> {
+    const { columns, resolution, rows } = this;
+    return this.pixels(this.atlas, [(k % columns) * resolution, Math.floor(k / columns) * rows, resolution, rows]);
+  }
+
+  private async pixels(of: Target, at: [number, number, number, number]): Promise<Float32Array> {
     const { gl } = this;
-    const values = new Float32Array(RESULT_WIDTH * this.resultRows * 4);
+    const values = new Float32Array(at[2] * at[3] * 4);
     const buffer = gl.createBuffer();
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.bufferData(gl.PIXEL_PACK_BUFFER, values.byteLength, gl.STREAM_READ);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.result.frame);
-    gl.readPixels(0, 0, RESULT_WIDTH, this.resultRows, gl.RGBA, gl.FLOAT, 0);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, of.frame);
+    gl.readPixels(...at, gl.RGBA, gl.FLOAT, 0);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
     await this.done();
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, buffer);
     gl.getBufferSubData(gl.PIXEL_PACK_BUFFER, 0, values);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, null);
     gl.deleteBuffer(buffer);
-    return values.subarray(0, this.eyes.count * 4);
+    return values;
   }
 
   private drawHemicubes(first: number, looks: number, sky: Vec): void {

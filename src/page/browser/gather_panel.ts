@@ -1,5 +1,6 @@
 // The panel of gathering: start, pause, forget, and compare each pass with the matrix solution.
 import { Gather } from "./gather";
+import { drawHemicube } from "./hemicube_picture";
 import { reflectedDifference } from "./gather_eyes";
 import { counted, element, make, on, select, short } from "./ui";
 import type { Viewer } from "./viewer";
@@ -24,7 +25,10 @@ export class GatherPanel {
     this.say();
   }
 
-  moment(): string { return `Gathered, pass ${this.gather?.state.pass ?? 0}`; }
+  moment(): string {
+    const { pass, eyes } = this.gather?.state ?? { pass: 0, eyes: 0 };
+    return eyes > 0 ? `Gathering, pass ${pass + 1}` : `Gathered, pass ${pass}`;
+  }
 
   toggle(): void {
     if (element<HTMLButtonElement>("gather-start").disabled) return;
@@ -41,6 +45,8 @@ export class GatherPanel {
     this.gather = null;
     this.running = false;
     element("gather-passes").replaceChildren();
+    element("hemicube").hidden = true;
+    this.viewer.stage.point(null);
     this.say();
   }
 
@@ -52,7 +58,7 @@ export class GatherPanel {
   private begin(): void {
     const { viewer } = this;
     this.onBegin();
-    viewer.showSolved(); // we compare with a solution, not an iterate
+    if (viewer.light !== viewer.solved) viewer.showSolved(); // we compare with a solution, not an iterate
     try {
       const resolution = Number(select("gather-resolution").value);
       this.gather = new Gather(viewer.data, viewer.solved, viewer.background(), resolution);
@@ -63,11 +69,23 @@ export class GatherPanel {
     this.reflectance = viewer.solved.reflectance;
     this.gather.onPass = (irradiance) => this.take(irradiance);
     this.gather.viewerMoves = () => viewer.stage.moving;
-    this.gather.onProgress = () => this.say();
+    this.gather.onProgress = (irradiance, eye, strip) => this.progress(irradiance, eye, strip);
     this.gather.onFailure = (error) => {
       this.forget();
       element("gather-facts").textContent = error.message;
     };
+  }
+
+  /** Shows what has been gathered in this pass, and what the last eye sees. */
+  private progress(irradiance: Float32Array, eye: number, strip: Float32Array): void {
+    const { viewer } = this;
+    viewer.showGathered(irradiance);
+    drawHemicube(element<HTMLCanvasElement>("hemicube-picture"), strip, this.gather!.gpu.resolution,
+                 viewer.uniforms.exposure.value);
+    element("hemicube").hidden = false;
+    element("hemicube-text").textContent = `What vertex ${counted(eye)} sees`;
+    viewer.stage.point(this.gather!.eyes.position(eye));
+    this.say();
   }
 
   private take(irradiance: Float32Array): void {
@@ -77,6 +95,7 @@ export class GatherPanel {
     const figure = make("data", { value: String(difference) }, `${short(100 * difference)}%`);
     element("gather-passes").prepend(
       make("tr", {}, make("th", { scope: "row" }, `Pass ${pass}`), make("td", {}, figure)));
+    this.say();
   }
 
   private refuse(sentence: string): void {

@@ -1,5 +1,5 @@
 // Draws the scene after changes: one picture, or two halves for before and after.
-import { Color, Scene, WebGLRenderer } from "three";
+import { BufferAttribute, BufferGeometry, Color, Points, PointsMaterial, Scene, WebGLRenderer } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
@@ -14,6 +14,7 @@ export const SETTLED_MS = 300;
 /** Pixels of the screen a pixel of the page, as far as pictures have them. */
 export const pixelRatio = (): number => Math.min(window.devicePixelRatio, 2);
 const MARK_PIXELS = 3;
+const DOT_PIXELS = 9, DOT_COLOUR = 0xff2d9b;
 const RIM_PIXELS = 6; // behind the mark, so that it shows on any colour
 
 /** The outline of a picked patch. */
@@ -56,6 +57,8 @@ export class Stage {
   private readonly renderer: WebGLRenderer | null; // null: the browser has no WebGL 2
   private readonly scene = new Scene();
   private readonly marks: Record<MarkName, Mark>;
+  private readonly dot = new Points(new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(3), 3)),
+    new PointsMaterial({ color: DOT_COLOUR, size: DOT_PIXELS, sizeAttenuation: false, depthTest: false, toneMapped: false }));
   private readonly pace: Pace | null; // null: a GPU draws
   private wanted = false;
   private drawing = false;
@@ -69,6 +72,9 @@ export class Stage {
     if (this.renderer) this.renderer.autoClear = false;
     this.pace = this.renderer && drawsInSoftware(this.gl(this.renderer)) ? new Pace() : null;
     this.scene.add(meshes.group);
+    this.dot.visible = false;
+    this.dot.renderOrder = 3;
+    this.scene.add(this.dot);
     this.marks = { first: new Mark(this.scene), second: new Mark(this.scene) };
     control.listen(() => this.move());
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -78,6 +84,13 @@ export class Stage {
 
   mark(name: MarkName, outline: Float32Array | null, colour: string): void {
     this.marks[name].set(outline, new Color(colour));
+    this.draw();
+  }
+
+  /** Shows a place of the scene, less its origin, by a dot; null: none. */
+  point(at: [number, number, number] | null): void {
+    this.dot.visible = at !== null;
+    if (at) this.dot.position.set(...at);
     this.draw();
   }
 

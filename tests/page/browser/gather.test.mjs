@@ -85,6 +85,19 @@ async function gathered(page, passes) {
   );
 }
 
+/** Pauses as soon as so many passes are complete, before any eye of the next has looked. */
+const pauseAfter = (page, passes) =>
+  page.evaluate((wanted) => new Promise((resolve) => {
+    const source = document.getElementById("source");
+    const watch = new MutationObserver(() => {
+      if (source.textContent !== `Gathered, pass ${wanted}`) return;
+      document.getElementById("gather-start").click();
+      watch.disconnect();
+      resolve();
+    });
+    watch.observe(source, { childList: true });
+  }), passes);
+
 /** The frames that the browser drew while the first pass ran, and the longest time between two. */
 const framesOfPass = (page) =>
   page.evaluate(async () => {
@@ -110,9 +123,7 @@ test("three passes, started by the keyboard, give the light of radiosity gather"
   const { frames, longest } = await framesOfPass(page);
   t.diagnostic(`${frames} frames in a pass of software, the longest ${longest.toFixed(0)} ms`);
   assert.ok(frames > 10 && longest < 2000, `${frames} frames, ${longest} ms`); // a batch takes 60 ms of a quiet machine
-  await gathered(page, 3);
-  await page.locator("#picture").focus();
-  await page.keyboard.press("g");
+  await pauseAfter(page, 3);
   assert.equal(await page.locator("#gather-start").textContent(), "Start");
   const passes = Number(await page.locator("#gather-facts").getAttribute("data-pass"));
   assert.ok(Math.abs(Number(await page.locator("#gather-facts").getAttribute("data-weight")) - 1) < 1e-5);
@@ -207,13 +218,8 @@ test("gathering starts from the matrix solution, also after relighting, a run, a
 
   await page.locator("#gather-resolution").selectOption("32");
   await press("g");
-  await says("Relit");
-  assert.deepEqual(await irradiance(page, patches), solution);
+  await pauseAfter(page, 1);
   assert.deepEqual(await setOptions(page), options);
-  await press("Escape");
-  await gathered(page, 1);
-  await press("g"); // pause
-  await says("Gathered");
   await press("b");
   assert.equal(await page.locator("#split-before").textContent(), "Matrix solution");
   const both = await colours(page);
@@ -231,6 +237,68 @@ test("gathering starts from the matrix solution, also after relighting, a run, a
   assert.deepEqual(await irradiance(page, patches), solution);
   assert.deepEqual(said, []);
   await page.close();
+});
+
+test("the first vertices are there at once, patch by patch, with the hemicube of the last", async (t) => {
+  const { page, said } = await open(browser, "cornell.html");
+  await page.evaluate(() => { document.getElementById("gather-panel").open = true; });
+  const took = await page.evaluate(() => new Promise((resolve) => {
+    const begin = performance.now();
+    const watch = new MutationObserver(() => {
+      if (!document.getElementById("hemicube").hidden) resolve(performance.now() - begin);
+    });
+    watch.observe(document.getElementById("hemicube"), { attributes: true });
+    document.getElementById("gather-start").click();
+  }));
+  t.diagnostic(`the first vertices were there after ${took.toFixed(0)} ms`);
+  assert.ok(took < 2000, `${took} ms`); // 500 is what is wanted
+  const lit = async () => (await colours(page)).filter((x) => x > 0).length;
+  const few = await lit();
+  await page.waitForFunction(() => Number(document.getElementById("gather-facts").textContent.match(/: (\d+)/)?.[1]) > 300);
+  const more = await lit();
+  assert.ok(more > few + 10, `${more} colours are lit after ${few}`);
+  assert.match(await page.locator("#source").textContent(), /Gathering, pass 1/);
+  assert.match(await page.locator("#hemicube-text").textContent(), /What vertex [\d,]+ sees/);
+  const seen = await page.locator("#hemicube-picture").evaluate((canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const alpha = (x, y) => data[4 * (Math.floor(y * canvas.height) * canvas.width + Math.floor(x * canvas.width)) + 3];
+    return { corner: alpha(0.1, 0.1), top: alpha(0.5, 0.5), side: alpha(0.9, 0.5), size: canvas.width };
+  });
+  assert.deepEqual(seen, { corner: 0, top: 255, side: 255, size: 128 });
+  await page.locator("#gather-reset").click();
+  assert.ok(await page.locator("#hemicube").isHidden());
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+// Every pixel is shown once, where the shaders of GatherGpu draw its direction.
+test("the hemicube's picture is unfolded without a break", async () => {
+  const { stripPixel } = await module("hemicube_picture");
+  const size = 16;
+  const seen = new Map();
+  for (let row = 0; row < 2 * size; ++row) {
+    for (let column = 0; column < 2 * size; ++column) {
+      const pixel = stripPixel((4 * (column + 0.5)) / (2 * size) - 2, (4 * (row + 0.5)) / (2 * size) - 2, size);
+      if (pixel !== null) seen.set(pixel, (seen.get(pixel) ?? 0) + 1);
+    }
+  }
+  assert.equal(seen.size, 3 * size * size); // every pixel of the strip
+  assert.ok([...seen.values()].every((count) => count === 1));
+  // A ray's pixel: the top looks along n; sides along s, t, -s, -t, as in GatherGpu.
+  const at = (s, t) => {
+    const [along, across] = Math.abs(s) > Math.abs(t) ? [Math.abs(s), s > 0 ? t : -t] : [Math.abs(t), t > 0 ? -s : s];
+    const side = Math.abs(s) > Math.abs(t) ? (s > 0 ? 0 : 2) : t > 0 ? 1 : 3;
+    const [column, row] = [Math.floor(((across / along + 1) / 2) * size), Math.floor((1 / along) * (size / 2))];
+    return along <= 1 ? Math.floor(((t + 1) / 2) * size) * size + Math.floor(((s + 1) / 2) * size)
+      : (size + (side * size) / 2 + row) * size + column;
+  };
+  for (const [s, t] of [[0.3, -0.6], [3.1, 1.3], [-1.2, 5.1], [-2.3, -0.4], [0.9, -1.7]]) {
+    // Where the unfolded side shows the direction (s, t, 1).
+    const along = Math.max(Math.abs(s), Math.abs(t));
+    const [x, y] = along <= 1 ? [s, t] : Math.abs(s) > Math.abs(t) ? [Math.sign(s) * (2 - 1 / along), t / along]
+      : [s / along, Math.sign(t) * (2 - 1 / along)];
+    assert.equal(stripPixel(x, y, size), at(s, t), `${s}, ${t}`);
+  }
 });
 
 // The clock of this test advances by what an eye takes.
