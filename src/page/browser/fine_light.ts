@@ -41,7 +41,7 @@ export class FineLight {
   private readonly little: Rgb;
   private readonly varying: boolean[]; // materials
 
-  constructor(private readonly data: PageData, private readonly stored: PatchLight) {
+  constructor(private readonly data: PageData, stored: PatchLight) {
     const { elementIrradiance, elementPatch, elementShare, header } = data;
     this.varying = varyingMaterials(data);
     this.rest = elementIrradiance.slice();
@@ -63,11 +63,8 @@ export class FineLight {
     this.prepared = true;
   }
 
-  /** The light of element vertices in the stored light, Q*3. */
-  before(): Float32Array { return this.radiosity(this.stored, this.data.elementIrradiance.slice()); }
-
-  /** The same for a solution of patches and its lamps. */
-  of(light: PatchLight, factors: Factors): Float32Array {
+  /** The irradiance of element vertices, Q*3, for a solution of patches and its lamps. */
+  irradiance(light: PatchLight, factors: Factors): Float32Array {
     this.prepare();
     const { data, corner, weight, then, rest } = this;
     const now = shadingValues(data, this.others(light.irradiance, factors), BANDS);
@@ -90,7 +87,7 @@ export class FineLight {
         result[at] = result[at]! + factor[at % BANDS]! * data.elementIrradiance[at]! * share[at]!;
       }
     });
-    return this.radiosity(light, result);
+    return result;
   }
 
   /** Irradiance of patches less what elements know lamp by lamp. */
@@ -106,11 +103,12 @@ export class FineLight {
   }
 
   /**
-   * Turns irradiance into radiosity, in place. Where textures or colours of vertices multiply it, it stays irradiance,
-   * times what a slider does to the reflectance.
+   * The radiosity of element vertices, Q*3, by their irradiance. Where textures or colours of vertices multiply it, it
+   * is irradiance, times what a slider does to the reflectance.
    */
-  private radiosity(light: PatchLight, values: Float32Array): Float32Array {
+  radiosity(light: PatchLight, irradiance: Float32Array): Float32Array {
     const { elementPatch, surface, header, reflectance } = this.data;
+    const values = irradiance.slice();
     for (let at = 0; at < values.length; ++at) {
       const b = at % BANDS, patch = elementPatch[(at - b) / BANDS]!, of = patch * BANDS + b;
       const now = light.reflectance[of]!, then = reflectance[of]!;

@@ -7,7 +7,7 @@ import type { Viewer } from "./viewer";
 
 /** Ids, in the order in which they are set. */
 const CONTROLS = [
-  "exposure", "tone", "outlines", "elements", "before-after", "split", "paint", "pick-first", "pick-second", "surface-first", "surface-second",
+  "exposure", "tone", "outlines", "elements", "isolines", "before-after", "split", "paint", "pick-first", "pick-second", "surface-first", "surface-second",
   "show"];
 /** Names of radio buttons. */
 const CHOICES = ["surfaces", "move"];

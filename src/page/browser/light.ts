@@ -31,6 +31,11 @@ export function luminance(values: Float32Array): Float32Array {
   return result;
 }
 
+const LUMENS = 683; // a watt, where luminance is 1
+
+/** Of irradiance, in lux. */
+export const illuminance = (irradiance: Float32Array): Float32Array => luminance(irradiance).map((y) => LUMENS * y);
+
 /** Whether each patch is a node, so that form factors are between patches. */
 export function nodesArePatches(data: PageData): boolean { return data.header.nodes === data.header.patches; }
 

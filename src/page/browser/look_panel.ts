@@ -8,6 +8,7 @@ import type { Show, Viewer } from "./viewer";
 
 const TITLES: Record<Show, string> = {
   "light": "Light",
+  "illuminance": "Illuminance, lx",
   "radiosity": "Radiosity B (luminance), W/m²",
   "irradiance": "Irradiance H (luminance), W/m²",
   "row-sum": "Row sum of form factors",
@@ -18,6 +19,9 @@ const TITLES: Record<Show, string> = {
   "heat-irradiance": "Irradiance of heat, W/m²",
   "difference": "B less the matrix solution's (luminance), W/m²",
 };
+/** The unit of what is shown; light is measured in lux. */
+export const unitOf = (shown: Show): string => (shown === "light" ? "lx" : TITLES[shown].split(", ")[1] ?? "");
+
 const EXPOSURE_STOPS = 8;
 
 /** The reason why no form factors can be painted; null: they can. */
@@ -142,6 +146,8 @@ export function setUpLook(viewer: Viewer): void {
       return viewer.refreshView();
     }
     showLegend(viewer);
+    const step = viewer.uniforms.lineStep.value;
+    element("isolines-step").textContent = step > 0 ? `, every ${short(step)} ${unitOf(shown)}` : "";
     showSky(viewer);
   });
   on("show", "change", () => {
@@ -155,6 +161,10 @@ export function setUpLook(viewer: Viewer): void {
   onChoice("surfaces", (value) => viewer.setSurfaces(value as Surfaces));
   on("outlines", "change", () => {
     viewer.meshes.outlines = input("outlines").checked;
+    viewer.refreshView();
+  });
+  on("isolines", "change", () => {
+    viewer.isolines = input("isolines").checked;
     viewer.refreshView();
   });
   element("elements-row").hidden = !viewer.meshes.hasElements;

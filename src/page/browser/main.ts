@@ -8,6 +8,7 @@ import { setUpKeys } from "./keys";
 import { unpack } from "./load";
 import { setUpLook } from "./look_panel";
 import { inspecting, pickAt, setUpPatch } from "./patch_panel";
+import { setUpPointer } from "./pointer_value";
 import { RelightPanel } from "./relight_panel";
 import { setUpShare } from "./share_panel";
 import { SETTLED_MS } from "./stage";
@@ -90,6 +91,7 @@ function setUpPanels(viewer: Viewer): void {
   setUpLook(viewer);
   setUpPatch(viewer);
   setUpSurfacePair(viewer);
+  setUpPointer(viewer);
   setUpHeat(viewer);
   const converge = new ConvergePanel(viewer);
   const relight = new RelightPanel(viewer, () => converge.forget());

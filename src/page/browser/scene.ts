@@ -5,7 +5,7 @@ import {
 import type { PageData } from "./container";
 import { cornerValues, type PatchLight } from "./light";
 import { emissionOfVertices, sortedTriangles, textureGroups, tints, type TextureGroup } from "./textures";
-import { elementMaterial, lineMaterial, patchMaterial, type Uniforms } from "./shading";
+import { lineMaterial, surfaceMaterial, type Uniforms } from "./shading";
 
 export type Surfaces = "smooth" | "flat" | "wireframe";
 
@@ -31,10 +31,10 @@ export class SceneMeshes {
     const none = new Float32Array(0);
     this.light = { now: none, before: none };
     this.values = { now: none, before: none, smooth: false };
-    this.patches = new Mesh(this.patchGeometry(), patchMaterial(uniforms));
+    this.patches = new Mesh(this.patchGeometry(), surfaceMaterial(uniforms, null));
     const groups = textureGroups(data);
     this.textured = groups.some(({ textures }) => textures);
-    this.elements = new Mesh(this.elementGeometry(groups), groups.map(({ textures }) => elementMaterial(uniforms, textures)));
+    this.elements = new Mesh(this.elementGeometry(groups), groups.map(({ textures }) => surfaceMaterial(uniforms, textures)));
     this.hasElements = data.elementTriangle.length > 0;
     const lines = lineMaterial(new Color(0, 0, 0), 0.55);
     this.lineUniforms = lines.uniforms;
@@ -47,6 +47,12 @@ export class SceneMeshes {
     this.light = { now, before };
     this.fill("light", now, 3, this.surfaces === "smooth");
     this.fill("lightBefore", before, 3, this.surfaces === "smooth");
+  }
+
+  /** Values of element vertices, for false colour and lines, now and before. */
+  setElementValues(now: Float32Array, before: Float32Array): void {
+    this.setElements("value", now);
+    this.setElements("valueBefore", before);
   }
 
   /** Light of element vertices, now and before, as FineLight has it, and the light of patches whose emission is theirs. */
@@ -85,6 +91,8 @@ export class SceneMeshes {
     this.lines.visible = this.outlines || wireframe;
     this.lineUniforms["opacity"]!.value = wireframe ? 0.9 : 0.45;
   }
+
+  hideLines(): void { this.lines.visible = false; }
 
   /** The outline of a patch: the edges of its triangles that no other of its triangles has. */
   outlineOf(patch: number): Float32Array {
@@ -130,6 +138,7 @@ export class SceneMeshes {
     geometry.setAttribute("position", new BufferAttribute(this.data.elementPosition, 3));
     const count = this.data.elementPatch.length;
     for (const name of ["light", "lightBefore"]) geometry.setAttribute(name, dynamic(count, 3));
+    for (const name of ["value", "valueBefore"]) geometry.setAttribute(name, dynamic(count, 1));
     if (this.textured) {
       for (const name of ["own", "ownBefore"]) geometry.setAttribute(name, dynamic(count, 3));
       geometry.setAttribute("tint", new BufferAttribute(tints(this.data), 3));

@@ -17,7 +17,9 @@ export interface Uniforms {
   low: IUniform<number>;
   high: IUniform<number>;
   map: IUniform<DataTexture>;
+  lineStep: IUniform<number>; // of isolines; 0: none
   before: IUniform<boolean>; // the light before, not as it is now
+  measured: IUniform<boolean>; // values instead of colours
 }
 
 export function mapTexture(map: ColourMap): DataTexture {
@@ -31,7 +33,8 @@ export function mapTexture(map: ColourMap): DataTexture {
 export function makeUniforms(): Uniforms {
   return {
     exposure: { value: 0 }, tone: { value: 0 }, showValue: { value: false }, logarithmic: { value: false },
-    low: { value: 0 }, high: { value: 1 }, map: { value: mapTexture(viridis) }, before: { value: false },
+    low: { value: 0 }, high: { value: 1 }, map: { value: mapTexture(viridis) }, lineStep: { value: 0 },
+    before: { value: false }, measured: { value: false },
   };
 }
 
@@ -53,10 +56,42 @@ const DISPLAY = /* glsl */ `
   }
 `;
 
-/** Triangles of patches; attributes light, lightBefore (vec3, W/m^2), value, valueBefore. */
-export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
+// A value's colour, and lines where it is a multiple of a step, about a pixel and a half wide. Where lines would meet,
+// as on a lamp, there are none.
+const VALUES = /* glsl */ `
+  uniform bool showValue, logarithmic;
+  uniform float low, high, lineStep;
+  uniform sampler2D map;
+  varying float vValue;
+  vec3 falseColour(vec3 shown) {
+    if (vValue < -1e29) return vec3(0.45);
+    if (logarithmic && vValue <= 0.0) { // grey, with a hint of the light, which shows what is where
+      return vec3(0.12 + 0.25 * dot(shown, vec3(0.2126, 0.7152, 0.0722)));
+    }
+    float t = logarithmic ? log(max(vValue, 1e-30) / low) / log(high / low) : (vValue - low) / (high - low);
+    return texture2D(map, vec2(clamp(t, 0.0, 1.0) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
+  }
+  vec3 withLine(vec3 shown) {
+    float along = vValue / lineStep;
+    float slope = fwidth(along);
+    float pixels = abs(along - floor(along + 0.5)) / max(slope, 1e-12);
+    float share = (1.0 - smoothstep(0.4, 1.2, pixels)) * (1.0 - smoothstep(0.1, 0.3, slope));
+    if (vValue < 0.5 * lineStep) share = 0.0;
+    return mix(shown, vec3(step(dot(shown, vec3(0.2126, 0.7152, 0.0722)), 0.4)), 0.75 * share);
+  }
+`;
+
+/**
+ * Triangles with their light: attributes light, lightBefore (vec3, W/m^2), and what false colours and lines show of
+ * them: value, valueBefore. With textures, light is what these and `tint` multiply, and `own`, `ownBefore` are emission;
+ * `place`: texture coordinates.
+ */
+export function surfaceMaterial(
+  uniforms: Uniforms, textures: { texels: DataTexture; emissionTexels: DataTexture } | null): ShaderMaterial {
+  const own = textures ? { texels: { value: textures.texels }, emissionTexels: { value: textures.emissionTexels } } : {};
   return new ShaderMaterial({
-    uniforms,
+    uniforms: { ...uniforms, ...own },
+    defines: textures ? { TEXTURED: "" } : {},
     toneMapped: false,
     polygonOffset: true, // outlines lie on top
     polygonOffsetFactor: 1,
@@ -67,48 +102,6 @@ export function patchMaterial(uniforms: Uniforms): ShaderMaterial {
       uniform bool before;
       varying vec3 vLight;
       varying float vValue;
-      void main() {
-        vLight = before ? lightBefore : light;
-        vValue = before ? valueBefore : value;
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-      }`,
-    fragmentShader: /* glsl */ `
-      ${DISPLAY}
-      uniform bool showValue, logarithmic;
-      uniform float low, high;
-      uniform sampler2D map;
-      varying vec3 vLight;
-      varying float vValue;
-      vec3 falseColour() {
-        if (vValue < -1e29) return vec3(0.45);
-        if (logarithmic && vValue <= 0.0) { // grey, with a hint of the light, which shows what is where
-          return vec3(0.12 + 0.25 * dot(display(vLight), vec3(0.2126, 0.7152, 0.0722)));
-        }
-        float t = logarithmic ? log(max(vValue, 1e-30) / low) / log(high / low) : (vValue - low) / (high - low);
-        return texture2D(map, vec2(clamp(t, 0.0, 1.0) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb;
-      }
-      void main() { gl_FragColor = vec4(showValue ? falseColour() : display(vLight), 1.0); }`,
-  });
-}
-
-/**
- * The mesh of elements; attributes light, lightBefore. With textures, light is what these and `tint` multiply, and
- * `own`, `ownBefore` are emission; `place`: texture coordinates.
- */
-export function elementMaterial(
-  uniforms: Uniforms, textures: { texels: DataTexture; emissionTexels: DataTexture } | null): ShaderMaterial {
-  const own = textures ? { texels: { value: textures.texels }, emissionTexels: { value: textures.emissionTexels } } : {};
-  return new ShaderMaterial({
-    uniforms: { ...uniforms, ...own },
-    defines: textures ? { TEXTURED: "" } : {},
-    toneMapped: false,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-    vertexShader: /* glsl */ `
-      attribute vec3 light, lightBefore;
-      uniform bool before;
-      varying vec3 vLight;
       #ifdef TEXTURED
         attribute vec3 tint, own, ownBefore;
         attribute vec2 place;
@@ -117,6 +110,7 @@ export function elementMaterial(
       #endif
       void main() {
         vLight = before ? lightBefore : light;
+        vValue = before ? valueBefore : value;
         #ifdef TEXTURED
           vTint = tint;
           vOwn = before ? ownBefore : own;
@@ -126,6 +120,8 @@ export function elementMaterial(
       }`,
     fragmentShader: /* glsl */ `
       ${DISPLAY}
+      ${VALUES}
+      uniform bool measured;
       varying vec3 vLight;
       #ifdef TEXTURED
         uniform sampler2D texels, emissionTexels;
@@ -137,7 +133,12 @@ export function elementMaterial(
       #else
         vec3 radiosity() { return vLight; }
       #endif
-      void main() { gl_FragColor = vec4(display(radiosity()), 1.0); }`,
+      void main() {
+        vec3 shown = display(radiosity());
+        if (showValue) shown = falseColour(shown);
+        if (lineStep > 0.0) shown = withLine(shown);
+        gl_FragColor = measured ? vec4(vValue, 0.0, 0.0, 1.0) : vec4(shown, 1.0);
+      }`,
   });
 }
 

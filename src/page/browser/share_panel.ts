@@ -9,7 +9,7 @@ const POSTER = 2; // times the picture's width and height
 
 /** Of what the program draws of patches. */
 const SHOWN: Partial<Record<Show, string>> = {
-  "radiosity": "radiosity", "irradiance": "irradiance", "row-sum": "row-sum", "factors": "form-factor:",
+  "illuminance": "illuminance", "radiosity": "radiosity", "irradiance": "irradiance", "row-sum": "row-sum", "factors": "form-factor:",
   "temperature": "temperature", "net-flux": "net-flux", "heat-irradiance": "heat-irradiance" };
 
 const precise = (x: number): string => String(Number(x.toPrecision(6)));
@@ -37,6 +37,7 @@ function differences(viewer: Viewer, relight: RelightPanel): string[] {
     [shown !== "light" && !SHOWN[shown], "this quantity"],
     [shown !== "light" && viewer.uniforms.logarithmic.value, "logarithmic colours"],
     [shown === "light" && select("tone").value !== "linear", "tone mapping"],
+    [shown === "light" && viewer.isolines, "isolines (--show illuminance has them)"],
     [viewer.meshes.outlines || viewer.meshes.surfaces === "wireframe", "lines"],
     [viewer.stage.split !== null, "the light before"],
     [viewer.source === "run", "a light on the way to the solution"],

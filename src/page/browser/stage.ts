@@ -1,5 +1,7 @@
 // Draws the scene after changes: one picture, or two halves for before and after.
-import { BufferAttribute, BufferGeometry, Color, Points, PointsMaterial, Scene, WebGLRenderer } from "three";
+import {
+  BufferAttribute, BufferGeometry, Color, FloatType, Points, PointsMaterial, Scene, WebGLRenderer, WebGLRenderTarget,
+} from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
@@ -60,6 +62,7 @@ export class Stage {
   private readonly dot = new Points(new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(3), 3)),
     new PointsMaterial({ color: DOT_COLOUR, size: DOT_PIXELS, sizeAttenuation: false, depthTest: false, toneMapped: false }));
   private readonly pace: Pace | null; // null: a GPU draws
+  private pixel: WebGLRenderTarget | null = null; // of valueAt()
   private wanted = false;
   private drawing = false;
   private settling = 0; // a timer
@@ -119,6 +122,29 @@ export class Stage {
     this.moving = moving;
     this.drawNow();
     return copy;
+  }
+
+  /** The value, as for false colour, at a pixel of the page; null: nothing is there. */
+  async valueAt(x: number, y: number): Promise<number | null> {
+    const { renderer, uniforms, canvas: { clientWidth: width, clientHeight: height } } = this;
+    if (!renderer?.extensions.has("EXT_color_buffer_float")) return null;
+    const { camera } = this.control;
+    this.pixel ??= new WebGLRenderTarget(1, 1, { type: FloatType });
+    this.meshes.arrange(this.elements);
+    this.meshes.hideLines();
+    camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1);
+    uniforms.measured.value = true;
+    uniforms.before.value = this.split !== null && x < this.split * width;
+    renderer.setScissorTest(false);
+    renderer.setRenderTarget(this.pixel);
+    renderer.clear();
+    renderer.render(this.meshes.group, camera);
+    renderer.setRenderTarget(null);
+    uniforms.measured.value = false;
+    camera.clearViewOffset();
+    const rgba = new Float32Array(4);
+    await renderer.readRenderTargetPixelsAsync(this.pixel, 0, 0, 1, 1, rgba);
+    return rgba[3] === 1 ? rgba[0]! : null;
   }
 
   private async drawWanted(): Promise<void> {
@@ -185,7 +211,7 @@ export class Stage {
     renderer.setScissor(left, 0, width, height);
     this.uniforms.before.value = before;
     const elements = this.elements && (!this.moving || !this.pace || this.pace.elements);
-    this.meshes.arrange(elements && !this.uniforms.showValue.value);
+    this.meshes.arrange(elements);
     renderer.render(this.scene, this.control.camera);
   }
 }

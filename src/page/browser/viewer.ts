@@ -8,7 +8,7 @@ import { redBlue, viridis, type ColourMap } from "./colour";
 import type { Heat, PageData, Rgb } from "./container";
 import { automaticRange, extremes, NO_VALUE, type Range, type Scale } from "./false_colour";
 import {
-  background, directIrradiance, factorsOf, lampIrradiance, luminance, materialsOfNodes, nodeMeans, nodesArePatches, patchIrradiance, radiosityOf,
+  background, directIrradiance, factorsOf, illuminance, lampIrradiance, luminance, materialsOfNodes, nodeMeans, nodesArePatches, patchIrradiance, radiosityOf,
   withMaterials, type StoredLight,
   type Factors, type MaterialState, type PatchLight,
 } from "./light";
@@ -20,11 +20,14 @@ import { SolverClient, type Relighting } from "./solver_client";
 import { type MarkName, Stage } from "./stage";
 import { freeStep } from "./walk";
 
-export type Show = "light" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors" | "difference" |
+export type Show = "light" | "illuminance" | "radiosity" | "irradiance" | "row-sum" | "row-error" | "factors" | "difference" |
   "temperature" | "net-flux" | "heat-irradiance";
 /** The source of the light that is shown. */
 export type Source = "stored" | "relit" | "run" | "gathered";
 
+/** Whose values are interpolated over surfaces, and have isolines. */
+const SMOOTH: Show[] = ["light", "illuminance", "radiosity", "irradiance", "difference", "heat-irradiance"];
+const MOST_LINES = 10; // in the range of colours
 const LOOKS = 9; // rays across the picture and down it
 
 export interface Picked {
@@ -45,6 +48,7 @@ export class Viewer {
   show: Show = "light";
   paint = true;
   elements = true;
+  isolines = false;
   range: Range | null = null; // null: that of the values
   extremes: Range = { low: 0, high: 0 }; // of the values that have a colour
   lights: Rgb[]; // factors on each light without a surface
@@ -55,6 +59,7 @@ export class Viewer {
   private readonly tree: TriangleTree;
   private readonly fine: FineLight;
   private readonly fineStored: Float32Array; // light of element vertices
+  private readonly luxStored: Float32Array; // of the same
   private reference: StoredLight | null = null; // where nodes are clusters of patches
   private direct: Float32Array; // N*3, with the present lamps: directIrradiance()
   private lamps: Float32Array; // N*3, likewise: lampIrradiance()
@@ -75,7 +80,8 @@ export class Viewer {
     this.materials = materialsOfNodes(data, this.stored, this.direct);
     this.meshes = new SceneMeshes(data, this.uniforms);
     this.fine = new FineLight(data, this.stored);
-    this.fineStored = this.fine.before();
+    this.fineStored = this.fine.radiosity(this.stored, data.elementIrradiance);
+    this.luxStored = illuminance(data.elementIrradiance);
     this.control = new CameraControl(canvas, data.header);
     this.stage = new Stage(canvas, this.meshes, this.control, this.uniforms);
     this.tree = new TriangleTree(data.position, data.patchTriangle);
@@ -253,8 +259,11 @@ export class Viewer {
     const shown = this.shown();
     const falseColour = shown !== "light";
     this.uniforms.showValue.value = falseColour;
-    this.stage.elements = this.showsElements;
-    if (falseColour) this.setColours(this.values(shown, this.light));
+    this.stage.elements = this.showsElements && ["light", "illuminance"].includes(shown);
+    const lined = this.isolines && SMOOTH.includes(shown);
+    if (falseColour || lined) this.setColours(this.values(shown, this.light));
+    const { low, high, lineStep } = this.uniforms;
+    lineStep.value = lined ? roundStep((high.value - low.value) / MOST_LINES) : 0;
     this.stage.draw();
     this.tell("view");
   }
@@ -262,8 +271,7 @@ export class Viewer {
   refreshValues(): void {
     const now = this.values(this.shown(), this.light);
     const before = this.values(this.shown(), this.before);
-    const smooth = ["radiosity", "irradiance", "difference", "heat-irradiance"].includes(this.shown());
-    this.meshes.setValues(now, before, smooth);
+    this.meshes.setValues(now, before, SMOOTH.includes(this.shown()));
     this.refreshView();
   }
 
@@ -274,6 +282,7 @@ export class Viewer {
       values && values.length > 0 ? values[k]! : NO_VALUE);
     switch (show) {
       case "light":
+      case "illuminance": return illuminance(light.irradiance);
       case "radiosity": return luminance(radiosityOf(light));
       case "irradiance": return luminance(light.irradiance);
       case "row-sum": return ofNode(data.rowSum);
@@ -319,9 +328,15 @@ export class Viewer {
 
   private refreshLight(): void {
     this.meshes.setLight(radiosityOf(this.light), radiosityOf(this.before));
-    if (this.source === "stored") this.meshes.setElementLight(this.fineStored, this.fineStored, this.stored, this.stored);
+    if (this.source === "stored") {
+      this.meshes.setElementLight(this.fineStored, this.fineStored, this.stored, this.stored);
+      this.meshes.setElementValues(this.luxStored, this.luxStored);
+    }
     if (this.source === "relit") {
-      this.meshes.setElementLight(this.fine.of(this.light, this.factors), this.fineStored, this.light, this.stored);
+      const irradiance = this.fine.irradiance(this.light, this.factors);
+      const radiosity = this.fine.radiosity(this.light, irradiance);
+      this.meshes.setElementLight(radiosity, this.fineStored, this.light, this.stored);
+      this.meshes.setElementValues(illuminance(irradiance), this.luxStored);
     }
     this.refreshValues();
     this.tell("light");
@@ -362,6 +377,12 @@ export class Viewer {
   private tell(event: string): void {
     for (const act of this.listeners[event] ?? []) act();
   }
+}
+
+/** The least of 1, 2, 5, 10, 20... that is no less. */
+function roundStep(least: number): number {
+  const decade = 10 ** Math.floor(Math.log10(least));
+  return decade * [1, 2, 5, 10].find((factor) => factor * decade >= least * (1 - 1e-9))!;
 }
 
 function boxMiddle(position: Float32Array): Vector3 {

@@ -66,11 +66,11 @@ export async function saved(page, button) {
   return file;
 }
 
-/** Runs the page's command as a shell does. The picture's file, and the command. */
-export async function commandPicture(page, name) {
+/** Runs the page's command as a shell does, without `leftOut`. The picture's file, and the command. */
+export async function commandPicture(page, name, leftOut = "") {
   const file = join(folder, "pages", name);
   const command = await page.locator("#command").textContent();
-  const words = command.replace("radiosity render", `'${program}' render --quiet`).replace(/-o \S+$/, `-o '${file}'`);
+  const words = command.replace(leftOut, "").replace("radiosity render", `'${program}' render --quiet`).replace(/-o \S+$/, `-o '${file}'`);
   execFileSync("/bin/sh", ["-c", words]);
   return [file, command];
 }

@@ -1,0 +1,62 @@
+// Lux at the pointer and isolines, against `radiosity render --show illuminance`.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { commandPicture, launch, open, saved } from "./support.mjs";
+
+let browser, page, said, picture;
+before(async () => {
+  browser = await launch();
+  ({ page, said } = await open(browser, "cornell.html", {}, "#show=illuminance"));
+  picture = page.locator("#picture");
+});
+after(() => browser?.close());
+
+const lux = (...words) =>
+  JSON.parse(execFileSync("/usr/bin/python3", [join(process.env.PAGE_ROOT, "tests/page/browser/lux.py"), ...words]));
+
+async function valueAt(x, y) {
+  await page.evaluate(() => { delete document.getElementById("pointer-value").dataset.value; });
+  await picture.hover({ position: { x, y } });
+  await page.waitForFunction(() => document.getElementById("pointer-value").dataset.value);
+  return Number(await page.locator("#pointer-value").getAttribute("data-value"));
+}
+
+test("the pointer has the lux of the place, as render has it", async (t) => {
+  const [file] = await commandPicture(page, "lux.exr", /--range \S+/);
+  const places = [[200, 300], [450, 300], [700, 300], [480, 120], [550, 480], [420, 690], [390, 500]];
+  const truth = lux(file, ...places.map(String));
+  for (const [k, [x, y]] of places.entries()) {
+    const value = await valueAt(x, y);
+    t.diagnostic(`${value.toFixed(1)} lx, render ${truth[k].toFixed(1)} lx`);
+    // Elements of all patches are less fine than those of a picture: 1% of the light, and a pixel.
+    assert.ok(Math.abs(value - truth[k]) < 0.02 * truth[k], `${x}, ${y}: ${value} lx, not ${truth[k]}`);
+  }
+  assert.match(await page.locator("#pointer-value").textContent(), /^[\d.]+ lx · .*block/);
+  await page.locator("#show").selectOption("light");
+  assert.ok(Math.abs(await valueAt(450, 301) - truth[1]) < 0.02 * truth[1], "the picture's light is measured, too");
+  await page.locator("#show").selectOption("radiosity");
+  await valueAt(450, 300);
+  assert.match(await page.locator("#pointer-value").textContent(), / W\/m² · /);
+  await picture.hover({ position: { x: 20, y: 20 } }); // beside the scene
+  await page.waitForFunction(() => document.getElementById("pointer-value").hidden);
+});
+
+test("isolines lie at round numbers of lux", async (t) => {
+  await page.locator("#show").selectOption("illuminance");
+  await page.evaluate(() => document.getElementById("share-panel").setAttribute("open", ""));
+  const [file] = await commandPicture(page, "lux.exr", /--range \S+/);
+  const without = await saved(page, "#save-picture");
+  execFileSync("/bin/cp", [without, `${without}.without.png`]);
+  await page.locator("#isolines").check();
+  assert.match(await page.locator("#isolines-step").textContent(), /, every 100 lx/);
+  await page.waitForTimeout(500);
+  const { share, count } = lux(file, "--lines", "100", `${without}.without.png`, await saved(page, "#save-picture"));
+  t.diagnostic(`${count} pixels of lines, ${(100 * share).toFixed(1)}% of them beside a multiple of 100 lx`);
+  assert.ok(count > 3000, `${count} pixels`);
+  assert.ok(share > 0.95, `${share}`);
+  await page.locator("#show").selectOption("row-sum"); // of patches: not interpolated, and without lines
+  assert.equal(await page.locator("#isolines-step").textContent(), "");
+  assert.deepEqual(said, []);
+});
