@@ -113,7 +113,9 @@ function setUpPanels(viewer: Viewer): void {
     for (const panel of document.querySelectorAll("details")) panel.open = false;
   }
   const fragment = setUpShare(viewer, relight); // after all others, since it restores what an address says
-  setUpKeys(viewer, converge, gather, new Tour(viewer, converge, fragment));
+  const tour = new Tour(viewer, converge, fragment);
+  setUpKeys(viewer, converge, gather, tour);
+  tour.offer();
 }
 
 async function begin(): Promise<void> {

@@ -11,6 +11,7 @@ type Step = keyof typeof TOUR;
 const STEPS = Object.keys(TOUR) as Step[];
 const OFF_PATCH = 1e-3; // of the scene's diagonal: where an eye on a patch is
 
+const VISITED = "radiosity-visited";
 const SEES_MUCH = 0.8; // of what the one sees that sees most
 
 /** Of the patches that a grid over the picture meets, from the middle on, the first that sees much of the scene. */
@@ -25,6 +26,17 @@ function patchInView(viewer: Viewer): number {
   return patches.find((patch) => seen(patch) >= SEES_MUCH * most) ?? 0;
 }
 
+/** Whether no page of this program was opened here before; false where a browser keeps no notes for pages of files. */
+function isFirstVisit(): boolean {
+  try {
+    if (localStorage.getItem(VISITED)) return false;
+    localStorage.setItem(VISITED, "1");
+    return true;
+  } catch {
+    return false;
+  }
+}
+
 export class Tour {
   private at: number | null = null; // the step; null: closed
   private before = ""; // the address of the page as it was
@@ -33,12 +45,22 @@ export class Tour {
   constructor(private readonly viewer: Viewer, private readonly converge: ConvergePanel,
               private readonly fragment: Fragment) {
     on("open-tour", "click", () => this.toggle());
+    on("tour-offer-yes", "click", () => this.toggle());
+    on("tour-offer-no", "click", () => this.endOffer());
     on("tour-close", "click", () => this.close());
     on("tour-back", "click", () => this.show(this.at! - 1));
     on("tour-next", "click", () => (this.at === STEPS.length - 1 ? this.close() : this.show(this.at! + 1)));
   }
 
+  /** Offers the tour on the first visit, unless the address asks for something. */
+  offer(): void {
+    if (location.hash.length <= 1 && isFirstVisit()) element("tour-offer").hidden = false;
+  }
+
+  private endOffer(): void { element("tour-offer").hidden = true; }
+
   toggle(): void {
+    this.endOffer();
     if (this.at !== null) return this.close();
     this.before = this.fragment.link();
     this.viewer.resetView();

@@ -37,9 +37,10 @@ export function launch() {
   });
 }
 
-/** A page that was loaded, and what its console said. */
-export async function open(browser, name, options = {}, fragment = "") {
+/** A page that was loaded, and what its console said. `visited`: by one who was here before. */
+export async function open(browser, name, options = {}, fragment = "", visited = true) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, reducedMotion: "reduce", ...options });
+  if (visited) await page.addInitScript(() => localStorage.setItem("radiosity-visited", "1"));
   const said = [];
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));

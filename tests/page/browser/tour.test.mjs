@@ -72,3 +72,42 @@ test("390 pixels: the tour stands in place of the panels, and leaves the picture
   assert.deepEqual(said, []);
   await page.close();
 });
+
+test("the tour is offered on the first visit alone, and never forced", async () => {
+  const { page, said } = await open(browser, "small.html", {}, "", false);
+  const offer = page.locator("#tour-offer");
+  assert.ok(await offer.isVisible());
+  assert.equal(await page.evaluate(() => document.activeElement === document.body), true);
+  await page.locator("#tour-offer-no").click();
+  assert.ok(await offer.isHidden());
+  assert.ok(await page.locator("#tour").isHidden());
+  await page.reload();
+  await page.waitForFunction(() => document.documentElement.dataset.ready);
+  assert.ok(await offer.isHidden());
+
+  await page.evaluate(() => localStorage.clear());
+  await page.reload();
+  await page.waitForFunction(() => document.documentElement.dataset.ready);
+  await page.locator("#tour-offer-yes").click();
+  assert.ok(await offer.isHidden());
+  assert.ok(await page.locator("#tour").isVisible());
+  assert.deepEqual(said, []);
+  await page.close();
+});
+
+test("where the browser keeps no notes, and where a link asks for a view, no tour is offered", async () => {
+  const { page: linked } = await open(browser, "small.html", {}, "#show=irradiance", false);
+  assert.ok(await linked.locator("#tour-offer").isHidden());
+  await linked.close();
+  const page = await browser.newPage();
+  const said = [];
+  page.on("pageerror", (error) => said.push(error.message));
+  await page.addInitScript(() => {
+    Object.defineProperty(window, "localStorage", { get() { throw new DOMException("no", "SecurityError"); } });
+  });
+  await page.goto(linked.url().split("#")[0]);
+  await page.waitForFunction(() => document.documentElement.dataset.ready);
+  assert.ok(await page.locator("#tour-offer").isHidden());
+  assert.deepEqual(said, []);
+  await page.close();
+});
