@@ -108,7 +108,8 @@ Image thumbnail(Session& session, Pipeline& pipeline, const SurfaceLight& light,
 }
 
 void writePages(Session& session, Pipeline& pipeline, bool elements, bool heat, OutputSet& files) {
-  const SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
+  SurfaceLight light = elements ? pipeline.elementLight() : pipeline.solvedLight();
+  if (elements) light.materials = pipeline.pointMaterials();
   const ExposedPicture shown = exposePicture(session, pipeline, light);
   const PageOptions options{fs::path(session.request.input).stem().string(),
                             shown.picture.camera,

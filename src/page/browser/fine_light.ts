@@ -38,6 +38,8 @@ export class FineLight {
   private prepared = false; // they are known
   private readonly rest: Float32Array; // Q*3: what is not in shares
   private readonly then: Float32Array; // of shading vertices: likewise, of patches
+  private readonly was: Float32Array; // Q*3: that, interpolated
+  private readonly gain: Float32Array; // Q*3: `rest` over it; -1 where it is dark
   private readonly little: Rgb;
   private readonly varying: boolean[]; // materials
 
@@ -55,37 +57,36 @@ export class FineLight {
     this.little = [0, 1, 2].map((b) => DARK * meanOf(this.then, b)) as Rgb;
     this.corner = new Uint32Array(elementPatch.length * 3);
     this.weight = new Float32Array(elementPatch.length * 3);
+    this.was = new Float32Array(this.rest.length);
+    this.gain = new Float32Array(this.rest.length);
   }
 
   /** Does what of() needs once. */
   prepare(): void {
-    if (!this.prepared) this.findCorners();
+    if (this.prepared) return;
+    this.findCorners();
+    this.findGains();
     this.prepared = true;
   }
 
   /** The irradiance of element vertices, Q*3, for a solution of patches and its lamps. */
   irradiance(light: PatchLight, factors: Factors): Float32Array {
     this.prepare();
-    const { data, corner, weight, then, rest } = this;
+    const { data, corner, weight, was, gain, rest } = this;
     const now = shadingValues(data, this.others(light.irradiance, factors), BANDS);
     const result = new Float32Array(rest.length);
-    for (let at = 0; at < result.length; ++at) {
-      const b = at % BANDS, v = at - b;
-      let is = 0, was = 0;
-      for (let k = v; k < v + 3; ++k) {
-        const from = corner[k]! * BANDS + b;
-        is += weight[k]! * now[from]!;
-        was += weight[k]! * then[from]!;
+    for (let v = 0; v < result.length; v += BANDS) {
+      const i = corner[v]! * BANDS, j = corner[v + 1]! * BANDS, k = corner[v + 2]! * BANDS;
+      const a = weight[v]!, b = weight[v + 1]!, c = weight[v + 2]!;
+      for (let band = 0; band < BANDS; ++band) {
+        const at = v + band;
+        const is = a * now[i + band]! + b * now[j + band]! + c * now[k + band]!;
+        const value = gain[at]! >= 0 ? gain[at]! * is : rest[at]! + is - was[at]!;
+        result[at] = value > 0 ? value : 0;
       }
-      const value = was > this.little[b]! ? (rest[at]! * is) / was : rest[at]! + is - was;
-      result[at] = value > 0 ? value : 0;
     }
     data.header.element_lamps.forEach((lamp, k) => {
-      const share = data.elementShare[k]!;
-      const factor = factorOf(lamp, factors).map((x) => x / WHOLE) as Rgb;
-      for (let at = 0; at < result.length; ++at) {
-        result[at] = result[at]! + factor[at % BANDS]! * data.elementIrradiance[at]! * share[at]!;
-      }
+      addShares(result, data.elementIrradiance, data.elementShare[k]!, factorOf(lamp, factors));
     });
     return result;
   }
@@ -108,14 +109,27 @@ export class FineLight {
    */
   radiosity(light: PatchLight, irradiance: Float32Array): Float32Array {
     const { elementPatch, surface, header, reflectance } = this.data;
+    const varies = header.surfaces.map(({ material }) => this.varying[material]!);
     const values = irradiance.slice();
-    for (let at = 0; at < values.length; ++at) {
-      const b = at % BANDS, patch = elementPatch[(at - b) / BANDS]!, of = patch * BANDS + b;
-      const now = light.reflectance[of]!, then = reflectance[of]!;
-      if (!this.varying[header.surfaces[surface[patch]!]!.material]) values[at] = light.emission[of]! + now * values[at]!;
-      else if (then > 0) values[at] = (values[at]! * now) / then;
+    for (let v = 0; v < elementPatch.length; ++v) {
+      const patch = elementPatch[v]!, isVarying = varies[surface[patch]!]!;
+      for (let b = 0; b < BANDS; ++b) {
+        const at = v * BANDS + b, of = patch * BANDS + b;
+        const now = light.reflectance[of]!, then = reflectance[of]!;
+        if (!isVarying) values[at] = light.emission[of]! + now * values[at]!;
+        else if (then > 0) values[at] = (values[at]! * now) / then;
+      }
     }
     return values;
+  }
+
+  private findGains(): void {
+    const { corner, weight, then, was, gain, rest } = this;
+    for (let at = 0; at < rest.length; ++at) {
+      const b = at % BANDS, v = at - b;
+      for (let k = v; k < v + 3; ++k) was[at] = was[at]! + weight[k]! * then[corner[k]! * BANDS + b]!;
+      gain[at] = was[at]! > this.little[b]! ? rest[at]! / was[at]! : -1;
+    }
   }
 
   /** Finds, for each vertex, the triangle of its patch that it is in. */
@@ -143,6 +157,16 @@ export class FineLight {
         this.weight[3 * v + c] = inside[c]! / sum;
       }
     }
+  }
+}
+
+/** Adds a lamp's share of the stored irradiance, times a factor on the lamp. */
+function addShares(to: Float32Array, irradiance: Float32Array, share: Uint16Array, [red, green, blue]: Rgb): void {
+  const r = red / WHOLE, g = green / WHOLE, b = blue / WHOLE;
+  for (let at = 0; at < to.length; at += BANDS) {
+    to[at] = to[at]! + r * irradiance[at]! * share[at]!;
+    to[at + 1] = to[at + 1]! + g * irradiance[at + 1]! * share[at + 1]!;
+    to[at + 2] = to[at + 2]! + b * irradiance[at + 2]! * share[at + 2]!;
   }
 }
 

@@ -21,12 +21,13 @@ export function radiosityOf(light: PatchLight): Float32Array {
   return light.emission.map((e, k) => e + light.reflectance[k]! * light.irradiance[k]!);
 }
 
-/** Rec. 709. */
-export function luminance(values: Float32Array): Float32Array {
+/** Rec. 709, times `scale`. */
+export function luminance(values: Float32Array, scale = 1): Float32Array {
+  const r = 0.2126 * scale, g = 0.7152 * scale, b = 0.0722 * scale;
   const result = new Float32Array(values.length / BANDS);
   for (let i = 0; i < result.length; ++i) {
     const at = i * BANDS;
-    result[i] = 0.2126 * values[at]! + 0.7152 * values[at + 1]! + 0.0722 * values[at + 2]!;
+    result[i] = r * values[at]! + g * values[at + 1]! + b * values[at + 2]!;
   }
   return result;
 }
@@ -34,7 +35,7 @@ export function luminance(values: Float32Array): Float32Array {
 const LUMENS = 683; // a watt, where luminance is 1
 
 /** Of irradiance, in lux. */
-export const illuminance = (irradiance: Float32Array): Float32Array => luminance(irradiance).map((y) => LUMENS * y);
+export const illuminance = (irradiance: Float32Array): Float32Array => luminance(irradiance, LUMENS);
 
 /** Whether each patch is a node, so that form factors are between patches. */
 export function nodesArePatches(data: PageData): boolean { return data.header.nodes === data.header.patches; }

@@ -13,7 +13,7 @@ export function setUpPointer(viewer: Viewer): void {
   const say = async () => {
     if (!place) return;
     const at = place, patch = viewer.patchAt(...at);
-    const value = patch === null ? null : await viewer.stage.valueAt(...at);
+    const value = patch === null ? null : await viewer.valueAt(...at);
     if (place !== at) return;
     text.hidden = value === null;
     if (value === null) return;

@@ -112,7 +112,7 @@ export class SceneMeshes {
 
   private setElements(name: string, values: Float32Array): void {
     const attribute = this.elements.geometry.getAttribute(name) as BufferAttribute;
-    (attribute.array as Float32Array).set(values);
+    attribute.array = values;
     attribute.needsUpdate = true;
   }
 

@@ -59,7 +59,8 @@ export class Viewer {
   private readonly tree: TriangleTree;
   private readonly fine: FineLight;
   private readonly fineStored: Float32Array; // light of element vertices
-  private readonly luxStored: Float32Array; // of the same
+  private fineIrradiance: Float32Array; // of element vertices, as they are drawn
+  private luxOf: Float32Array | null = null; // of what irradiance the meshes have the lux
   private reference: StoredLight | null = null; // where nodes are clusters of patches
   private direct: Float32Array; // N*3, with the present lamps: directIrradiance()
   private lamps: Float32Array; // N*3, likewise: lampIrradiance()
@@ -80,8 +81,8 @@ export class Viewer {
     this.materials = materialsOfNodes(data, this.stored, this.direct);
     this.meshes = new SceneMeshes(data, this.uniforms);
     this.fine = new FineLight(data, this.stored);
+    this.fineIrradiance = data.elementIrradiance;
     this.fineStored = this.fine.radiosity(this.stored, data.elementIrradiance);
-    this.luxStored = illuminance(data.elementIrradiance);
     this.control = new CameraControl(canvas, data.header);
     this.stage = new Stage(canvas, this.meshes, this.control, this.uniforms);
     this.tree = new TriangleTree(data.position, data.patchTriangle);
@@ -209,6 +210,19 @@ export class Viewer {
     return hit ? this.data.trianglePatch[hit.triangle]! : null;
   }
 
+  /** What false colours show at a pixel of the canvas, in the picture's light lux; null: nothing is there. */
+  valueAt(x: number, y: number): Promise<number | null> {
+    if (this.stage.elements) this.prepareLux();
+    return this.stage.valueAt(x, y);
+  }
+
+  /** Gives elements their lux, which few looks need. */
+  private prepareLux(): void {
+    if (this.luxOf === this.fineIrradiance) return;
+    this.luxOf = this.fineIrradiance;
+    this.meshes.setElementValues(illuminance(this.fineIrradiance), illuminance(this.data.elementIrradiance));
+  }
+
   /** Whether some of the picture shows light, or a false colour: outside a room, or within a table, there is none. */
   seesLight(): boolean {
     const { clientWidth: width, clientHeight: height } = this.stage.canvas;
@@ -260,6 +274,7 @@ export class Viewer {
     const falseColour = shown !== "light";
     this.uniforms.showValue.value = falseColour;
     this.stage.elements = this.showsElements && ["light", "illuminance"].includes(shown);
+    if (this.stage.elements && (falseColour || this.isolines)) this.prepareLux();
     const lined = this.isolines && SMOOTH.includes(shown);
     if (falseColour || lined) this.setColours(this.values(shown, this.light));
     const { low, high, lineStep } = this.uniforms;
@@ -329,14 +344,13 @@ export class Viewer {
   private refreshLight(): void {
     this.meshes.setLight(radiosityOf(this.light), radiosityOf(this.before));
     if (this.source === "stored") {
+      this.fineIrradiance = this.data.elementIrradiance;
       this.meshes.setElementLight(this.fineStored, this.fineStored, this.stored, this.stored);
-      this.meshes.setElementValues(this.luxStored, this.luxStored);
     }
     if (this.source === "relit") {
-      const irradiance = this.fine.irradiance(this.light, this.factors);
-      const radiosity = this.fine.radiosity(this.light, irradiance);
+      this.fineIrradiance = this.fine.irradiance(this.light, this.factors);
+      const radiosity = this.fine.radiosity(this.light, this.fineIrradiance);
       this.meshes.setElementLight(radiosity, this.fineStored, this.light, this.stored);
-      this.meshes.setElementValues(illuminance(irradiance), this.luxStored);
     }
     this.refreshValues();
     this.tell("light");

@@ -17,8 +17,10 @@ const lux = (...words) =>
   JSON.parse(execFileSync("/usr/bin/python3", [join(process.env.PAGE_ROOT, "tests/page/browser/lux.py"), ...words]));
 
 async function valueAt(x, y) {
-  await page.evaluate(() => { delete document.getElementById("pointer-value").dataset.value; });
   await picture.hover({ position: { x, y } });
+  await page.waitForTimeout(300); // what is said of the place before is over
+  await page.evaluate(() => { delete document.getElementById("pointer-value").dataset.value; });
+  await picture.hover({ position: { x, y: y + 0.25 } });
   await page.waitForFunction(() => document.getElementById("pointer-value").dataset.value);
   return Number(await page.locator("#pointer-value").getAttribute("data-value"));
 }
