@@ -108,12 +108,12 @@ struct PipelineOptions {
 
 /// A scalar of every patch, to be drawn by renderFalseColour().
 enum class Quantity {
-  radiosity,    ///< luminance of B, W/m^2; the sum of bands that are not three
-  irradiance,   ///< the same of H
-  form_factor,  ///< F from one patch to each
-  row_sum,      ///< sum of the row of each patch: fronts seen
-  temperature,  ///< of heat(), K; NaN if undetermined
-  net_flux,     ///< of heat(), W/m^2 given off
+  radiosity,       ///< luminance of B, W/m^2; the sum of bands that are not three
+  irradiance,      ///< the same of H
+  form_factor,     ///< F from one patch to each
+  row_sum,         ///< sum of the row of each patch: fronts seen
+  temperature,     ///< of heat(), K; NaN if undetermined
+  net_flux,        ///< of heat(), W/m^2 given off
   heat_irradiance  ///< of heat(), W/m^2, of all its bands
 };
 struct ScalarField {

@@ -79,7 +79,8 @@ void addShowOptions(CLI::App& app, Request& r) {
           "Of patches, as solved: radiosity or irradiance (W/m^2), form-factor:PATCH (F from patch "
           "number PATCH, from 0, to each patch), row-sum (how much of each patch's view ends on "
           "fronts); of a results file with heat: temperature (K), net-flux (given off, W/m^2) or "
-          "heat-irradiance (W/m^2). Colours count by luminance, {} R + {} G + {} B (Rec. 709), {:g} lm/W",
+          "heat-irradiance (W/m^2). Colours count by luminance, {} R + {} G + {} B (Rec. 709), "
+          "{:g} lm/W",
           kLuminanceOfRed, kLuminanceOfGreen, kLuminanceOfBlue, kLumensPerWatt));
   addRangeOption(app, r, "Picture");
   app.add_flag("--layers", r.layers,

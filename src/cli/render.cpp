@@ -13,6 +13,7 @@
 #include "cli/show.h"
 #include "cli/stored_conditions.h"
 #include "cli/summaries.h"
+#include "cli/words.h"
 #include "radiosity/pipeline.h"
 #include "radiosity/results.h"
 

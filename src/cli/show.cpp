@@ -22,12 +22,10 @@ struct PatchWord {
   const char* word;
   Quantity quantity;
 };
-constexpr PatchWord kOfPatches[] = {{"radiosity", Quantity::radiosity},
-                                    {"irradiance", Quantity::irradiance},
-                                    {"row-sum", Quantity::row_sum},
-                                    {"temperature", Quantity::temperature},
-                                    {"net-flux", Quantity::net_flux},
-                                    {"heat-irradiance", Quantity::heat_irradiance}};
+constexpr PatchWord kOfPatches[] = {
+    {"radiosity", Quantity::radiosity}, {"irradiance", Quantity::irradiance},
+    {"row-sum", Quantity::row_sum},     {"temperature", Quantity::temperature},
+    {"net-flux", Quantity::net_flux},   {"heat-irradiance", Quantity::heat_irradiance}};
 constexpr const char* kFormFactor = "form-factor:";
 
 /// The same with the ends of --range.
@@ -123,10 +121,10 @@ void drawQuantity(Session& session, Pipeline& pipeline, const Picture& picture, 
     session.report.number("highest", "highest of all patches", high, legend.unit);
   }
   files.write(Format::png, withUnit(legend), [&](const std::string& temporary) {
-    writeImage(temporary,
-               renderFalseColour(mesh, field.values, legend, picture.camera, options,
-                                 session.progress),
-               true, metadataOf(picture, legend.title, legend.unit));
+    writeImage(
+        temporary,
+        renderFalseColour(mesh, field.values, legend, picture.camera, options, session.progress),
+        true, metadataOf(picture, legend.title, legend.unit));
   });
   files.write(Format::exr, withUnit(legend), [&](const std::string& temporary) {
     std::vector<double> values;

@@ -208,8 +208,8 @@ class LitElements {
           addCorner(patch, corners[std::size_t(whole - kCorners.begin())], corner);
           continue;
         }
-        const Vec3 light = w.x * corners[0].radiosity + w.y * corners[1].radiosity +
-                           w.z * corners[2].radiosity;
+        const Vec3 light =
+            w.x * corners[0].radiosity + w.y * corners[1].radiosity + w.z * corners[2].radiosity;
         const auto vertex = vertices_.add({float(light.x), float(light.y), float(light.z)});
         triangles_.push_back(vertex);
         describeLast(patch, w.x * at[0] + w.y * at[1] + w.z * at[2], corner);
@@ -263,8 +263,8 @@ class LitElements {
   std::vector<Vec3> positions_;
   std::vector<float> irradiance_;  ///< three a vertex, W/m^2
   std::vector<Index> patches_;
-  std::vector<float> places_;            ///< two a vertex, texture coordinates
-  std::vector<std::uint16_t> colours_;   ///< three a vertex, of 65535
+  std::vector<float> places_;           ///< two a vertex, texture coordinates
+  std::vector<std::uint16_t> colours_;  ///< three a vertex, of 65535
   std::vector<Index> triangles_;
 };
 

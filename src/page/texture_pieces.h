@@ -29,7 +29,8 @@ class TexturePieces {
   bool enter(Index patch);
   /// Calls visit(piece) for the parts of a triangle of the patch: one, with the same corners in the
   /// same order, if texture coordinates and colours are linear over it.
-  void cut(const std::array<Vec3, 3>& corners, const std::function<void(const Piece&)>& visit) const;
+  void cut(const std::array<Vec3, 3>& corners,
+           const std::function<void(const Piece&)>& visit) const;
 
  private:
   const PatchMesh& mesh_;

@@ -18,7 +18,8 @@ using Json = Container::Json;
 /// The scene's textures that surfaces use, in the order in which they are met.
 class UsedTextures {
  public:
-  explicit UsedTextures(const Scene& scene) : scene_(scene), number_(scene.textures.size(), kNone) {}
+  explicit UsedTextures(const Scene& scene)
+      : scene_(scene), number_(scene.textures.size(), kNone) {}
 
   /// The number of a texture in the page; null if there is none.
   Json numberOf(Index texture) {

@@ -19,8 +19,8 @@ namespace {
 using test::PageReader;
 using test::SceneBuilder;
 
-/// Two squares side by side that are meshed as one rectangle. Each has the whole texture; the red of
-/// its vertices rises over the left one and falls over the right one.
+/// Two squares side by side that are meshed as one rectangle. Each has the whole texture; the red
+/// of its vertices rises over the left one and falls over the right one.
 Scene twoTiles(const std::vector<Vec2>& places) {
   SceneBuilder builder;
   const Index floor = builder.surface("floor", 0.5);

@@ -55,3 +55,23 @@ export function chromaOf(hex: string): Rgb {
   const most = Math.max(...linear);
   return most > 0 ? (linear.map((x) => x / most) as Rgb) : [1, 1, 1];
 }
+
+/** The chromaticity x, y of a black body of 1,667 to 25,000 K (Kim et al., US patent 7,024,034, 2006). */
+function planckianXy(kelvin: number): [number, number] {
+  const t = 1000 / kelvin;
+  const x = kelvin < 4000 ? ((-0.2661239 * t - 0.2343589) * t + 0.8776956) * t + 0.17991
+    : ((-3.0258469 * t + 2.1070379) * t + 0.2226347) * t + 0.24039;
+  const y = kelvin < 2222 ? ((-1.1063814 * x - 1.3481102) * x + 2.18555832) * x - 0.20219683
+    : kelvin < 4000 ? ((-0.9549476 * x - 1.37418593) * x + 2.09137015) * x - 0.16748867
+    : ((3.081758 * x - 5.8733867) * x + 3.75112997) * x - 0.37001483;
+  return [x, y];
+}
+
+/** The linear colour (Rec. 709) of such a black body, its largest channel 1; what is out of gamut is 0. */
+export function planckian(kelvin: number): Rgb {
+  const [x, y] = planckianXy(kelvin);
+  const [X, Z] = [x / y, (1 - x - y) / y];
+  const rgb = [3.2404542 * X - 1.5371385 - 0.4985314 * Z, -0.969266 * X + 1.8760108 + 0.041556 * Z,
+               0.0556434 * X - 0.2040259 + 1.0572252 * Z].map((value) => Math.max(0, value));
+  return rgb.map((value) => value / Math.max(...rgb)) as Rgb;
+}

@@ -32,7 +32,7 @@ export function luminance(values: Float32Array, scale = 1): Float32Array {
   return result;
 }
 
-const LUMENS = 683; // a watt, where luminance is 1
+export const LUMENS = 683; // a watt, where luminance is 1
 
 /** Of irradiance, in lux. */
 export const illuminance = (irradiance: Float32Array): Float32Array => luminance(irradiance, LUMENS);

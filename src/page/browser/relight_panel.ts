@@ -1,7 +1,7 @@
 // The panel of lamps and materials that the viewer changes, with equivalent options of the command line.
-import { chromaOf, hexOf } from "./colour";
+import { chromaOf, hexOf, planckian } from "./colour";
 import type { Rgb } from "./container";
-import { texturedMaterials, type Textured } from "./light";
+import { LUMENS, texturedMaterials, type Textured } from "./light";
 import type { Relighting } from "./solver_client";
 import { counted, element, make, on, quoted, short } from "./ui";
 import type { Viewer } from "./viewer";
@@ -17,10 +17,15 @@ interface Row {
   stored: Rgb;
   limits: Rgb; // largest values of bands
   unit: string;
+  photometric?: { unit: string; times: number }; // what that is by luminance, in lumens and the like
   /** The program's option for the present value; null: it has none. */
   option: () => string | null;
 }
 
+/** Of lights without a surface. */
+const PHOTOMETRIC: Record<string, string> = { "W/sr": "cd", "W/m^2": "lx", "W/m^2/sr": "cd/m²" };
+
+const brightness = ([r, g, b]: Rgb): number => 0.2126 * r + 0.7152 * g + 0.0722 * b;
 const largest = (value: Rgb): number => Math.max(...value);
 const times = (value: Rgb, factor: number): Rgb => value.map((x) => x * factor) as Rgb;
 const same = (a: Rgb, b: Rgb): boolean => a.every((x, k) => x === b[k]);
@@ -69,10 +74,17 @@ export class RelightPanel {
     return {
       key: `emission:${name}`, name, note: textured ? ", textured" : "", stored: emission, unit: "W/m²",
       limits: uniform(STRONGEST * largest(emission)),
+      photometric: { unit: "lm", times: LUMENS * this.areaOf(k) },
       get,
       set: (value) => { this.viewer.states[k]!.emission = value; },
       option: () => (textured ? null : `--set ${quoted(name)}.emission=${digits(get())}`),
     };
+  }
+
+  /** Of a material's patches, both sides, m^2. */
+  private areaOf(material: number): number {
+    const { area, surface, header } = this.viewer.data;
+    return area.reduce((sum, a, i) => (header.surfaces[surface[i]!]!.material === material ? sum + a : sum), 0);
   }
 
   private light(l: number): Row {
@@ -80,6 +92,7 @@ export class RelightPanel {
     const get = () => strength.map((x, b) => x * this.viewer.lights[l]![b]!) as Rgb;
     return {
       key: `light:${name}`, name, note: "", stored: strength, limits: uniform(STRONGEST * largest(strength)), unit: unit.replace("^2", "²"),
+      ...(PHOTOMETRIC[unit] && { photometric: { unit: PHOTOMETRIC[unit], times: LUMENS } }),
       get,
       set: (value) => {
         this.viewer.lights[l] = value.map((x, b) => (strength[b]! > 0 ? x / strength[b]! : 0)) as Rgb;
@@ -118,10 +131,15 @@ export class RelightPanel {
       "aria-label": `${row.name}: ${what}` }) as HTMLInputElement;
     const output = make("output");
     const back = make("button", { type: "button", "aria-label": `Reset ${row.name}` }, "Reset") as HTMLButtonElement;
+    const lumens = make("span", { class: "note" });
+    const kelvin = make("input", { type: "number", min: "1700", max: "10000", step: "100", placeholder: "kelvin",
+      "aria-label": `${row.name}: colour temperature in kelvin` }) as HTMLInputElement;
     const say = () => {
       const level = largest(row.get());
+      const { photometric } = row;
+      lumens.textContent = photometric ? `${short(photometric.times * brightness(row.get()))} ${photometric.unit}` : "";
       output.textContent = `${short(level)}${row.unit ? ` ${row.unit}` : ""}`;
-      slider.setAttribute("aria-valuetext", output.textContent);
+      slider.setAttribute("aria-valuetext", [output.textContent, lumens.textContent].filter(Boolean).join(", "));
       back.disabled = same(row.get(), row.stored);
     };
     const refresh = () => {
@@ -129,6 +147,7 @@ export class RelightPanel {
       if (largest(value) > 0) chroma = times(value, 1 / largest(value));
       slider.value = String(largest(value));
       colour.value = hexOf(chroma);
+      kelvin.value = "";
       say();
     };
     const change = (value: Rgb) => {
@@ -149,7 +168,16 @@ export class RelightPanel {
     });
     colour.addEventListener("input", () => {
       chroma = chromaOf(colour.value);
+      kelvin.value = "";
       change(times(chroma, Number(slider.value)));
+    });
+    // The colour of a black body, with as many lumens as before.
+    kelvin.addEventListener("change", () => {
+      if (kelvin.value === "" || !kelvin.reportValidity()) return;
+      const before = brightness(row.get());
+      chroma = planckian(Number(kelvin.value));
+      colour.value = hexOf(chroma);
+      change(times(chroma, before / brightness(chroma)));
     });
     back.addEventListener("click", () => {
       row.set([...row.stored]);
@@ -160,7 +188,7 @@ export class RelightPanel {
     refresh();
     const label = make("span", { class: "label" }, row.name, make("span", { class: "note" }, row.note));
     return make("div", { class: "relight", "data-name": row.name, "data-what": what },
-      label, colour, back, slider, output);
+      label, colour, back, slider, output, ...(row.photometric ? [lumens, kelvin] : []));
   }
 
   private changed(): void {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { commandPicture, launch, open, saved } from "./support.mjs";
+import { commandPicture, launch, module, open, results, saved, setOptions } from "./support.mjs";
 
 let browser, page, said, picture;
 before(async () => {
@@ -61,4 +61,39 @@ test("isolines lie at round numbers of lux", async (t) => {
   await page.locator("#show").selectOption("row-sum"); // of patches: not interpolated, and without lines
   assert.equal(await page.locator("#isolines-step").textContent(), "");
   assert.deepEqual(said, []);
+});
+
+test("black bodies have their published chromaticities", async () => {
+  const { planckian } = await module("colour");
+  // x, y of CIE 15: illuminant A, and 5,000 K and 6,500 K of the Planckian locus. The fit is off by up to .0006.
+  for (const [kelvin, x, y] of [[2856, 0.4476, 0.4074], [5000, 0.3451, 0.3516], [6500, 0.3135, 0.3237]]) {
+    const [r, g, b] = planckian(kelvin);
+    const X = 0.4124564 * r + 0.3575761 * g + 0.1804375 * b;
+    const Y = 0.2126729 * r + 0.7151522 * g + 0.072175 * b;
+    const Z = 0.0193339 * r + 0.119192 * g + 0.9503041 * b;
+    assert.ok(Math.abs(X / (X + Y + Z) - x) < 1e-3 && Math.abs(Y / (X + Y + Z) - y) < 1e-3, `${kelvin} K`);
+    assert.equal(Math.max(r, g, b), 1);
+  }
+});
+
+test("a lamp has its lumens, which a colour temperature keeps", async () => {
+  const truth = results("cornell.h5");
+  const lumens = truth.area.reduce((sum, area, i) => {
+    const [r, g, b] = truth.emission.slice(3 * i, 3 * i + 3);
+    return sum + 683 * area * (0.2126 * r + 0.7152 * g + 0.0722 * b);
+  }, 0);
+  await page.evaluate(() => { document.getElementById("relight-panel").open = true; });
+  const lamp = page.locator('.relight[data-name="light"][data-what="strength"]');
+  const shown = async () => Number((await lamp.locator("span.note").last().textContent()).match(/^([\d.]+) lm$/)[1]);
+  assert.ok(Math.abs((await shown()) - lumens) < 1e-3 * lumens, `${await shown()} lm, not ${lumens}`);
+  await lamp.locator("input[type=number]").fill("2700");
+  await lamp.locator("input[type=number]").press("Enter");
+  await page.waitForFunction(() => document.getElementById("relight-facts").dataset.state === "solved");
+  assert.ok(Math.abs((await shown()) - lumens) < 1e-3 * lumens, `${await shown()} lm, not ${lumens}`);
+  const [, option] = await setOptions(page);
+  const rgb = option.split("=")[1].split(",").map(Number);
+  const { planckian } = await module("colour");
+  rgb.forEach((x, b) => assert.ok(Math.abs(x / Math.max(...rgb) - planckian(2700)[b]) < 1e-5, option));
+  await lamp.getByRole("button").click();
+  assert.equal(await lamp.locator("input[type=number]").inputValue(), "");
 });

@@ -16,7 +16,7 @@ if (!program) {
 const modules = [
   ...["factors", "solver", "relight", "vector_product", "session"],
   ...["container", "light", "load", "bvh", "gather_weights", "gather_eyes", "gather_chunks", "gather_batch", "pace"],
-  ...["false_colour", "hemicube_picture"],
+  ...["colour", "false_colour", "hemicube_picture"],
 ];
 const sources = join(folder, "source");
 const tests = join(folder, "tests");

@@ -101,11 +101,11 @@ export function relativeError(values, truth) {
   return Math.sqrt(difference / size);
 }
 
-/** Colours of a grid of points of the picture, sRGB 0 to 255; the browser itself decodes the screenshot. */
+/** Colours of a grid of points of the picture without what the pointer says, sRGB 0 to 255; the browser itself decodes the screenshot. */
 export async function colours(where) {
   await where.waitForFunction(() => !document.getElementById("picture").hasAttribute("data-moving"));
   await where.waitForTimeout(150);
-  const png = (await where.locator("#picture").screenshot()).toString("base64");
+  const png = (await where.locator("#picture").screenshot({ style: "#pointer-value { visibility: hidden }" })).toString("base64");
   return where.evaluate(async (data) => {
     const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
     const canvas = new OffscreenCanvas(image.width, image.height);
