@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { after, before, test } from "node:test";
-import { apart, colours, commandPicture, launch, open, pixels, saved } from "./support.mjs";
+import { apart, colours, commandPicture, launch, open, pixels, saved, visited } from "./support.mjs";
 
 let browser;
 before(async () => {
@@ -47,6 +47,7 @@ test("a link restores the view, sliders, picks and looks", async () => {
   // In a new tab, and in one that has the page already.
   for (const from of ["about:blank", link.split("#")[0]]) {
     const other = await browser.newPage({ ...wide, reducedMotion: "reduce" });
+    await visited(other);
     await other.goto(from);
     if (from !== "about:blank") await other.waitForFunction(() => document.documentElement.dataset.ready);
     await other.goto(link);

@@ -37,10 +37,13 @@ export function launch() {
   });
 }
 
-/** A page that was loaded, and what its console said. `visited`: by one who was here before. */
-export async function open(browser, name, options = {}, fragment = "", visited = true) {
+/** Makes a page that of a person who was here before, who is not offered the tour. */
+export const visited = (page) => page.addInitScript(() => localStorage.setItem("radiosity-visited", "1"));
+
+/** A page that was loaded, and what its console said. `again`: visited() before. */
+export async function open(browser, name, options = {}, fragment = "", again = true) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, reducedMotion: "reduce", ...options });
-  if (visited) await page.addInitScript(() => localStorage.setItem("radiosity-visited", "1"));
+  if (again) await visited(page);
   const said = [];
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));
