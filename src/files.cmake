@@ -42,6 +42,7 @@ add_room(results HEADERS results names vtk KNOWS gather heat illuminance lightma
          USES radiosity_hdf5 TinyGLTF::TinyGLTF nlohmann_json::nlohmann_json)
 add_room(tables HEADERS tables matrix_files KNOWS results USES nlohmann_json::nlohmann_json)
 add_room(compare HEADERS compare KNOWS results)
+add_room(interchange HEADERS interchange KNOWS lightmap USES ZLIB::ZLIB)
 add_room(pipeline HEADERS pipeline KNOWS results elements)
 add_room(page HEADERS page KNOWS pipeline tables USES nlohmann_json::nlohmann_json ZLIB::ZLIB)
 
@@ -111,7 +112,7 @@ add_custom_command(TARGET radiosity_cli POST_BUILD
 # No inner loop is in these: optimising them takes a third of their compiling and gains nothing.
 foreach(target IN ITEMS radiosity_cli radiosity_scene radiosity_scene_gltf radiosity_scene_json
         radiosity_scene_three_mf radiosity_scene_vtk radiosity_scene_assimp radiosity_results radiosity_compare
-        radiosity_pipeline radiosity_page)
+        radiosity_pipeline radiosity_page radiosity_interchange)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endforeach()
 # But for what lights send, which all rays ask: by themselves, and after the option above.

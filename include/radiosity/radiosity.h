@@ -12,6 +12,7 @@
 #include "radiosity/gather.h"
 #include "radiosity/heat.h"
 #include "radiosity/illuminance.h"
+#include "radiosity/interchange.h"
 #include "radiosity/light.h"
 #include "radiosity/light_basis.h"
 #include "radiosity/light_file.h"

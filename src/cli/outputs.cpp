@@ -43,13 +43,15 @@ const std::vector<Extension>& extensions() {
       {".csv", Format::csv, {factors}},
       {".csv", Format::light_csv, {solve}},
       {".csv", Format::illuminance, {illuminance}},
-      {".json", Format::json, {factors}},
+      {".json", Format::json_table, {factors}},
       {".md", Format::markdown, {factors}},
       {".idf", Format::idf, {factors}},
       {".vf", Format::view3d, {factors}},
       {".txt", Format::triplets, {factors}},
       {".hdf5", Format::hdf5, {factors}},
       {".html", Format::page, {view}},
+      {".xml", Format::mitsuba, {render}},
+      {".pbrt", Format::pbrt, {render}},
   };
   return kAll;
 }
@@ -217,26 +219,48 @@ std::string OutputSet::path(Format format) const {
 void OutputSet::write(Format format, const std::string& what,
                       const std::function<void(const std::string&)>& writer) {
   for (std::size_t k = 0; k < outputs_.size(); ++k) {
-    if (outputs_[k].format != format) continue;
-    const std::string& temporary = files_[k].file->temporary();
-    // A writer only knows the temporary name, so we put the final name into its messages.
-    const auto named = [&](std::string message) {
-      const std::size_t at = message.find(temporary);
-      return at == std::string::npos ? message
-                                     : message.replace(at, temporary.size(), outputs_[k].path);
-    };
-    try {
-      writer(temporary);
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const InputError& error) {
-      throw InputError(named(error.what()));
-    } catch (const RunError& error) {
-      throw RunError(named(error.what()));
-    }
-    files_[k].what = what;
-    files_[k].written = true;
+    if (outputs_[k].format == format) writeFile(k, what, writer);
   }
+}
+
+void OutputSet::writeBeside(const std::string& path, const std::string& what,
+                            const std::function<void(const std::string&)>& writer) {
+  for (const Output& output : outputs_) {
+    if (!sameFile(output.path, path)) continue;
+    throw InputError(
+        fmt::format("{}: is an output, and would be a file beside {}; give one of "
+                    "them another name",
+                    path, outputs_.front().path));
+  }
+  if (wasFound(path)) {
+    throw InputError(path +
+                     ": is a file of the scene, which a file beside the output would replace; "
+                     "give the output another name");
+  }
+  add({path, Format::beside});
+  writeFile(files_.size() - 1, what, writer);
+}
+
+void OutputSet::writeFile(std::size_t k, const std::string& what,
+                          const std::function<void(const std::string&)>& writer) {
+  const std::string& temporary = files_[k].file->temporary();
+  // A writer only knows the temporary name, so we put the final name into its messages.
+  const auto named = [&](std::string message) {
+    const std::size_t at = message.find(temporary);
+    return at == std::string::npos ? message
+                                   : message.replace(at, temporary.size(), outputs_[k].path);
+  };
+  try {
+    writer(temporary);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const InputError& error) {
+    throw InputError(named(error.what()));
+  } catch (const RunError& error) {
+    throw RunError(named(error.what()));
+  }
+  files_[k].what = what;
+  files_[k].written = true;
 }
 
 void OutputSet::commit(Report& report, const Progress& progress) {

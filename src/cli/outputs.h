@@ -24,13 +24,16 @@ enum class Format {
   vtp,
   csv,
   light_csv,
-  json,
+  json_table,
   markdown,
   idf,
   view3d,
   triplets,
   hdf5,
   page,
+  mitsuba,
+  pbrt,
+  beside,
   lightmap,
   illuminance,
   surface_table,
@@ -69,6 +72,9 @@ class OutputSet {
   /// Calls writer(temporary path) for every output of that format; `what` describes it.
   void write(Format format, const std::string& what,
              const std::function<void(const std::string&)>& writer);
+  /// Claims and writes a file that belongs to an output and has a name made from that output's.
+  void writeBeside(const std::string& path, const std::string& what,
+                   const std::function<void(const std::string&)>& writer);
   /// Renames the written files and lists them in the report.
   void commit(Report& report, const Progress& progress);
 
@@ -78,6 +84,9 @@ class OutputSet {
     std::string what;
     bool written = false;
   };
+  void writeFile(std::size_t k, const std::string& what,
+                 const std::function<void(const std::string&)>& writer);
+
   std::vector<Output> outputs_;
   std::vector<File> files_;
 };

@@ -7,6 +7,7 @@
 #include "base/figure_text.h"
 #include "cli/commands.h"
 #include "cli/element_use.h"
+#include "cli/foreign_scene.h"
 #include "cli/light_mix.h"
 #include "cli/lightmap.h"
 #include "cli/picture.h"
@@ -98,8 +99,9 @@ void checkFinalGather(const Request& request, const Show& show, const OutputSet&
 /// Refuses impossible outputs before the work is done.
 void checkOutputs(const OutputSet& files, const Show& show) {
   const bool lit = files.has(Format::glb);
-  if (!lit && !hasPicture(files)) {
-    throw InputError("render: name the picture with -o, e.g. -o picture.png (or .exr, .hdr, .glb)");
+  if (!lit && !hasPicture(files) && !hasForeignScene(files)) {
+    throw InputError(
+        "render: name the picture with -o, e.g. -o picture.png (or .exr, .hdr, .glb, .xml, .pbrt)");
   }
   if (files.has(Format::hdr) && (show.quantity || show.light)) {
     throw InputError(files.path(Format::hdr) +
@@ -165,11 +167,16 @@ int runRender(Session& session) {
   checkShown(request, show, elements, files);
   checkLightmap(request, elements, files);
   checkMix(request, files);
+  checkForeignScene(request, files);
   Run run(session, files.path(Format::results));
   Pipeline& pipeline = run.pipeline;
   pipeline.options().factors.sources_only |= onlySources(pipeline, elements, files);
   chooseSources(request, pipeline);
   Picture picture = choosePicture(request, pipeline.scene());
+  const bool draws = hasPicture(files) || files.has(Format::glb);
+  if (onlyForeignScenes(files) && !picture.camera_from.empty()) {
+    return writeForeignScenesAlone(session, pipeline.scene(), picture, files);
+  }
   if (!show.quantity) requireColours(pipeline, request, files);
   if (show.needsLight() && request.mix.empty()) requireLight(session, pipeline);
   if (show.needsHeat()) requireHeat(session, pipeline);
@@ -198,8 +205,9 @@ int runRender(Session& session) {
     reflected = reflectedLight(pipeline.solution().radiosity, pipeline.materials());
   }
   framePicture(picture, mesh, factors.report.closed, reflected);
+  writeForeignScenes(session, pipeline.scene(), picture, files);
   SurfaceLight light;
-  if (!show.quantity) light = litSurfaces(session, pipeline, picture, elements, mix);
+  if (draws && !show.quantity) light = litSurfaces(session, pipeline, picture, elements, mix);
   if (show.light && show.light->falling) {
     const Solution& solution = mix ? mix->solution : pipeline.solution();
     light = fallingLight(std::move(light), solution.irradiance, solution.bands);
@@ -207,7 +215,7 @@ int runRender(Session& session) {
   reportPicture(session.report, picture);
   if (show.quantity) {
     drawQuantity(session, pipeline, picture, *show.quantity, show.patch, files);
-  } else {
+  } else if (draws) {
     drawPicture(session, pipeline, light, picture, show, files);
   }
   writeStages(session, pipeline, files);

@@ -22,8 +22,8 @@ constexpr std::size_t kTerminalRows = 40;
 /// Digits on the terminal; files have all.
 constexpr int kTerminalDigits = 4;
 
-constexpr std::array kTables = {Format::csv,    Format::json,     Format::markdown, Format::idf,
-                                Format::view3d, Format::triplets, Format::hdf5};
+constexpr std::array kTables = {Format::csv,    Format::json_table, Format::markdown, Format::idf,
+                                Format::view3d, Format::triplets,   Format::hdf5};
 
 /// True for formats of programs that read the matrix itself.
 bool isOfPatches(Format format) {
@@ -172,7 +172,7 @@ void writeTable(Session& session, Tables& tables, Format format, OutputSet& file
   switch (format) {
     case Format::csv:
       return write("", [&](Path path) { writeFactorsCsv(path, factors, layout, progress); });
-    case Format::json:
+    case Format::json_table:
       return write("", [&](Path path) { writeFactorsJson(path, factors, layout, progress); });
     case Format::markdown:
       return write("", [&](Path path) { writeFactorsMarkdown(path, factors, layout); });
@@ -246,7 +246,7 @@ void checkTables(const Session& session, const OutputSet& files,
   groupSurfaces(surfaces, request.groups);
   for (const Output& output : files.all()) {
     const auto rows = [&] { return rowsOf(betweenOf(request, output.format)); };
-    if (output.format == Format::csv || output.format == Format::json) {
+    if (output.format == Format::csv || output.format == Format::json_table) {
       checkTableRows(output.path, rows(), layoutOf(request));
     } else if (output.format == Format::markdown) {
       checkTableRows(output.path, rows(), TableLayout::wide);

@@ -37,6 +37,7 @@ CASES = [
     ("lightmap", "radiosity/render.h", ["results/glb.h", "radiosity/gather.h"]),
     ("results", "radiosity/gather.h", ["radiosity/compare.h"]),
     ("tables", "results/checked_file.h", ["radiosity/compare.h", "radiosity/pipeline.h"]),
+    ("interchange", "lightmap/face_triangles.h", ["radiosity/results.h", "radiosity/pipeline.h"]),
     ("pipeline", "radiosity/results.h", ["radiosity/compare.h", "radiosity/page.h"]),
     ("page", "results/lit_vertices.h", ["radiosity/compare.h"]),
     ("cli", "base/figure_text.h", ["mesh/bodies/winding.h", "scene/text.h"]),

@@ -1,0 +1,102 @@
+#include "interchange/exported_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "lightmap/face_triangles.h"
+
+namespace radiosity {
+
+std::vector<SurfaceTriangles> surfaceTriangles(const Scene& scene) {
+  std::vector<SurfaceTriangles> all(scene.surfaces.size());
+  std::vector<std::map<std::tuple<Index, double, double>, Index>> known(all.size());
+  for (const FaceTriangle& t : frontTriangles(scene)) {
+    SurfaceTriangles& surface = all[t.surface];
+    surface.surface = t.surface;
+    const bool textured = scene.materialOf(t.face).texture != kNone && !scene.texcoords.empty();
+    std::array<Index, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t corner = scene.face_offset[t.face] + t.corner[k];
+      const Vec2 place = textured ? scene.texcoords[corner] : Vec2(0);
+      const auto [at, is_new] = known[t.surface].try_emplace(
+          {scene.corners[corner], place.x, place.y}, Index(surface.vertices.size()));
+      if (is_new) {
+        surface.vertices.push_back(t.position[k]);
+        if (textured) surface.texcoords.push_back(place);
+      }
+      triangle[k] = at->second;
+    }
+    surface.triangles.push_back(triangle);
+  }
+  std::erase_if(all, [](const SurfaceTriangles& surface) { return surface.triangles.empty(); });
+  return all;
+}
+
+Vec3 meanRadiance(const Scene& scene, const Material& material) {
+  if (material.emission_texture == kNone) return material.radiance();
+  const Texture& texture = scene.textures[material.emission_texture];
+  Vec3 sum(0.0);
+  for (std::size_t k = 0; k < texture.texels.size(); ++k) sum[int(k % 3)] += texture.texels[k];
+  return material.radiance() * sum * (3.0 / double(texture.texels.size()));
+}
+
+Image reflectanceImage(const Scene& scene, const Material& material) {
+  const Texture& texture = scene.textures[material.texture];
+  Image image{texture.width, texture.height, {}};
+  image.rgba.reserve(texture.texels.size() / 3 * 4);
+  for (std::size_t k = 0; k < texture.texels.size(); k += 3) {
+    for (int c = 0; c < 3; ++c) {
+      image.rgba.push_back(float(material.reflectance[c] * texture.texels[k + std::size_t(c)]));
+    }
+    image.rgba.push_back(1);
+  }
+  return image;
+}
+
+Image skyImage(std::span<const Light> lights, int width, int height,
+               const std::function<Vec3(int column, int row)>& direction) {
+  const Background sky(lights, 3, true);
+  Image image{width, height, {}};
+  image.rgba.reserve(std::size_t(width) * std::size_t(height) * 4);
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      std::array<double, 3> radiance{};
+      sky.add(direction(column, row), 1, radiance);
+      for (const double value : radiance) image.rgba.push_back(float(value));
+      image.rgba.push_back(1);
+    }
+  }
+  return image;
+}
+
+bool anyLight(std::span<const double> bands) {
+  return std::ranges::any_of(bands, [](double value) { return value > 0; });
+}
+
+void noteLoss(std::string text, std::vector<Note>& notes) {
+  notes.push_back({Severity::warning, std::move(text)});
+}
+
+void noteLosses(const Scene& scene, const std::string& program, std::vector<Note>& notes) {
+  if (!scene.colours.empty()) {
+    noteLoss(program + ": colours of vertices are left out; materials have their own reflectance",
+             notes);
+  }
+  for (const Material& material : scene.materials) {
+    if (material.emission_texture == kNone) continue;
+    noteLoss(fmt::format("{}: '{}' emits the mean of its texture all over", program, material.name),
+             notes);
+  }
+}
+
+Vec3 uprightAcross(const Vec3& ahead) {
+  // Any axis that is not nearly along it.
+  return std::abs(ahead.y) < 0.9 * std::hypot(ahead.x, ahead.y, ahead.z) ? Vec3(0, 1, 0)
+                                                                         : Vec3(0, 0, 1);
+}
+
+}  // namespace radiosity
