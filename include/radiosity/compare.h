@@ -54,6 +54,7 @@ struct CompareOptions {
   bool partial = false;    ///< go on even if less than 99% of either side's area has a counterpart
   /// The largest distance between matching points, as a fraction of A's diagonal; 0 to 0.1.
   double match = 1e-3;
+  bool perceived = false;  ///< of pictures: PerceivedDifference, too
   void validate() const;
 
   /// A line an option (option_line.h).
@@ -67,6 +68,10 @@ struct CompareOptions {
           .value = "FRACTION",
           .help = "How far apart points of one surface may be, of A's diagonal"},
          o.match, {.to = 0.1, .above = 0});
+    list({.name = "perceived",
+          .help = "Also say how different two pictures look: FLIP (0: alike, to 1) and SSIM (1: "
+                  "alike)"},
+         o.perceived);
   }
 };
 
@@ -100,6 +105,16 @@ struct LargestDifference {
   double b = 0;  ///< scaled
 };
 
+/// How different two pictures look (src/compare/flip.h, similarity.h).
+struct PerceivedDifference {
+  /// The mean of FLIP: of pictures for a screen LDR-FLIP, of those that hold light HDR-FLIP.
+  double flip = 0;
+  /// SSIM of luminance as a screen shows it; none: the pictures are smaller than 11 x 11.
+  std::optional<double> ssim;
+  /// At which SSIM's screen shows both: the automatic one of A; none: they are for a screen.
+  std::optional<double> exposure_ev;
+};
+
 struct Comparison {
   bool cells_of_b = false;           ///< averages are over the cells of B, else of A
   std::size_t cells = 0;             ///< compared
@@ -114,6 +129,7 @@ struct Comparison {
   /// Sums without emitters, which dominate `sums`. Empty: neither side knows its emitters, or
   /// nothing emits.
   std::optional<BandSums> without_emitters;
+  std::optional<PerceivedDifference> perceived;  ///< where the options ask for it
   LargestDifference largest;
   std::vector<SurfaceDifference> surfaces;  ///< in order of their share of the difference
   /// |B - A| by cell or pixel: Rec. 709 luminance of three bands, the sum of any other number. NaN:
@@ -130,8 +146,10 @@ struct Comparison {
 /// message says what to do.
 Comparison compare(const LightField& a, const LightField& b, const CompareOptions& options);
 
-/// Compares pictures of the same size at every pixel where both show something. Values are used as
-/// stored (srgb8 is decoded). `match` and `partial` do not apply.
+/// Compares pictures at every pixel where both show something. Values are used as stored (srgb8 is
+/// decoded). Of two that hold light one may have k x k pixels for each of the other's: it is
+/// compared by their means, with a note. `match` and `partial` do not apply. Errors: InputError for
+/// other sizes, and for one picture made for a screen.
 Comparison compare(const ImageFile& a, LightUnit a_is, const ImageFile& b, LightUnit b_is,
                    const CompareOptions& options);
 

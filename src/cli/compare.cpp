@@ -205,6 +205,14 @@ void reportHeadline(Report& report, const Comparison& c) {
   report.mute(false);
 }
 
+void reportPerceived(Report& report, const PerceivedDifference& seen) {
+  report.number("flip", seen.exposure_ev ? "FLIP, of light (HDR)" : "FLIP, on a screen (LDR)",
+                seen.flip);
+  if (!seen.ssim) return;
+  report.number("ssim", "SSIM", *seen.ssim);
+  if (seen.exposure_ev) report.number("ssim_ev", "  at an exposure of", *seen.exposure_ev, "EV");
+}
+
 void reportComparison(Report& report, const Comparison& c, bool pictures, bool relative) {
   const std::size_t count = c.sums.a.size();
   const std::string unit = relative ? "of full scale" : pictures ? "W/m^2/sr" : "W/m^2";
@@ -230,6 +238,7 @@ void reportComparison(Report& report, const Comparison& c, bool pictures, bool r
   }
   report.number("fitted_scale", "best factor for B", c.fitted_scale);
   report.number("fitted_l2", "  would leave", c.fitted_l2);
+  if (c.perceived) reportPerceived(report, *c.perceived);
   report.number("largest", "largest difference", std::abs(c.largest.b - c.largest.a), unit);
   const double place[] = {c.largest.place.x, c.largest.place.y, c.largest.place.z};
   report.bands("largest_at", "  at", std::span(place).first(pictures ? 2 : 3),
@@ -316,7 +325,11 @@ int compareFiles(Session& session, OutputSet& files) {
   session.report.line("A", fmt::format("{}: {}", a.path, a.light));
   session.report.line("B", fmt::format("{}: {}", b.path, b.light));
   const bool pictures = a.isImage();
-  if (pictures) requirePixelOptions(request);
+  if (pictures) {
+    requirePixelOptions(request);
+  } else if (options.perceived) {
+    throw InputError("--perceived: is of pictures, and A and B hold surfaces; leave it out");
+  }
   const Comparison c = pictures ? compare(a.image(), a.unit, b.image(), b.unit, options)
                                 : compare(a.field(), b.field(), options);
   const bool relative = a.unit == LightUnit::srgb8;
@@ -324,11 +337,12 @@ int compareFiles(Session& session, OutputSet& files) {
   reportComparison(session.report, c, pictures, relative);
   const int code = judge(session, c);
   if (pictures) {
+    // The size of the smaller picture, in which both are compared.
+    const auto [width, height] = std::min(std::pair(a.image().image.width, a.image().image.height),
+                                          std::pair(b.image().image.width, b.image().image.height));
     files.write(Format::png, "difference, false colour", [&](const std::string& temporary) {
       writeImage(temporary,
-                 falseColourPixels(a.image().image.width, a.image().image.height, c.difference,
-                                   legendOf(3, true, relative)),
-                 true);
+                 falseColourPixels(width, height, c.difference, legendOf(3, true, relative)), true);
     });
   } else if (files.has(Format::png)) {
     Scene scene;

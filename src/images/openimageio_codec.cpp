@@ -49,6 +49,9 @@ DecodedImage samplesOf(OIIO::ImageInput& input, const ImageLimit& most) {
   image.width = spec.width;
   image.height = spec.height;
   image.channels = std::min(spec.nchannels, kMostChannels);
+  // What follows the colours need not be alpha: depth, normals, another layer.
+  const bool counts_alpha = image.channels == 2 || image.channels == kMostChannels;
+  if (counts_alpha && spec.alpha_channel != image.channels - 1) --image.channels;
   image.floating = spec.format.is_floating_point();
   image.linear = OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
   image.multiplied = spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;

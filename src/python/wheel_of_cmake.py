@@ -8,12 +8,14 @@ program, the libraries that it is linked to, manuals and scenes, where `cmake --
 import base64
 import hashlib
 import importlib.util
+import platform
 import re
 import shutil
 import subprocess
 import sys
 import sysconfig
 import tempfile
+import time
 import zipfile
 from pathlib import Path
 
@@ -104,6 +106,8 @@ def parts(prefix, data):
     for path in [prefix / "bin/radiosity", helper, *sorted((prefix / "share").rglob("*"))]:
         if path.is_file():
             yield path, f"{data}/{path.relative_to(prefix)}"
+    for path in sorted((package.parents[1] / "radiosity").glob("*.so*")):  # libraries of others
+        yield path, f"{data}/{path.relative_to(prefix)}"
     for path in sorted(package.parents[1].glob("*.so*")):
         if not path.is_symlink() and not re.search(r"\.so\.\d+\.", path.name):
             yield path, f"{data}/{path.relative_to(prefix)}"
@@ -112,13 +116,16 @@ def parts(prefix, data):
 
 
 class Wheel:
-    def __init__(self, path, info):
+    """`date`: of its files, (year, ..., second); without one the first that an archive can have."""
+
+    def __init__(self, path, info, date=(1980, 1, 1, 0, 0, 0)):
         self.file = zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED)
         self.info = info
+        self.date = date
         self.record = []
 
     def add(self, name, data, mode=0o644):
-        entry = zipfile.ZipInfo(name)
+        entry = zipfile.ZipInfo(name, self.date)
         entry.external_attr = (0o100000 | mode) << 16
         self.file.writestr(entry, data, zipfile.ZIP_DEFLATED)
         digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
@@ -126,7 +133,9 @@ class Wheel:
 
     def close(self):
         self.record.append(f"{self.info}/RECORD,,\n")
-        self.file.writestr(f"{self.info}/RECORD", "".join(self.record))
+        entry = zipfile.ZipInfo(f"{self.info}/RECORD", self.date)
+        entry.external_attr = 0o100644 << 16
+        self.file.writestr(entry, "".join(self.record), zipfile.ZIP_DEFLATED)
         self.file.close()
 
 
@@ -136,10 +145,10 @@ def get_requires_for_build_wheel(config_settings=None):
             if shutil.which(program) is None]
 
 
-def described():
-    """The wheel's tag, and the files that describe it."""
+def described(system=None):
+    """The wheel's tag, and the files that describe it. `system`: this one, if none."""
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    tag = f"{python}-{python}-{re.sub(r'[-.]', '_', sysconfig.get_platform())}"
+    tag = f"{python}-{python}-{system or re.sub(r'[-.]', '_', sysconfig.get_platform())}"
     numpy = "numpy" if pybind11_of_pip() else "numpy < 2"
     return tag, {"METADATA": METADATA.format(version=version(), python=PYTHON, numpy=numpy),
                  "WHEEL": WHEEL.format(tag=tag)}
@@ -158,15 +167,28 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """The hook that pip calls (PEP 517)."""
     folder = Path((config_settings or {}).get("build-dir", ROOT / "build/pip")).resolve()
     built(folder)
-    tag, descriptions = described()
-    stem = f"radiosity-{version()}"
-    wheel = Wheel(Path(wheel_directory) / f"{stem}-{tag}.whl", f"{stem}.dist-info")
     with tempfile.TemporaryDirectory() as prefix:
         subprocess.run(["cmake", "--install", folder, "--prefix", prefix], check=True,
                        stdout=subprocess.DEVNULL)
-        for path, name in parts(Path(prefix), f"{stem}.data/data"):
-            wheel.add(name, path.read_bytes(), path.stat().st_mode & 0o777)
+        return packed(Path(prefix), Path(wheel_directory), *described())
+
+
+def packed(prefix, directory, tag, descriptions, **options):
+    """Makes the wheel of an installation; returns its name."""
+    stem = f"radiosity-{version()}"
+    wheel = Wheel(directory / f"{stem}-{tag}.whl", f"{stem}.dist-info", **options)
+    for path, name in parts(prefix, f"{stem}.data/data"):
+        wheel.add(name, path.read_bytes(), path.stat().st_mode & 0o777)
     for name, text in descriptions.items():
         wheel.add(f"{stem}.dist-info/{name}", text.encode())
     wheel.close()
     return f"{stem}-{tag}.whl"
+
+
+def complete_wheel(prefix, directory, epoch):
+    """Makes the wheel of an installation that has all libraries but glibc's in it (tools/package); returns its
+    path. The glibc of this machine is the oldest that it runs with, which the tag says (PEP 600)."""
+    glibc = platform.libc_ver()[1].replace(".", "_")
+    date = time.gmtime(int(epoch))[:6]
+    name = packed(Path(prefix), Path(directory), *described(f"manylinux_{glibc}_{platform.machine()}"), date=date)
+    return str(Path(directory) / name)

@@ -6,6 +6,7 @@ import unittest
 import numpy as np
 
 from cli_runner import DATA, CliTest
+from exr_file import write_exr
 
 SMALL = ["--patches", "60", "--method", "hemicube", "--resolution", "32", "--emitters", "estimated"]
 
@@ -119,6 +120,29 @@ class Compare(CliTest):
         self.run_program("render", "r.h5", "--width", "32", "-o", "a.exr")
         for option in [("--camera", "x"), ("--width", "9"), ("--match", "0.01"), ("--partial",)]:
             self.refuse("a.exr", "a.exr", *option, words=[option[0], "pictures"])
+
+    def test_pictures_of_other_renderers(self):
+        """R, G and B in 16 or 32 bits, in any company: depth that comes fourth is no alpha."""
+        light = np.linspace(.25, 2, 32 * 32).reshape(32, 32)
+        full = {name: light.astype(np.float32) for name in "RGBA"}
+        full["A"][:] = 1
+        write_exr(self.folder / "a.exr", full)
+        half = {name: light.astype(np.float16) for name in "RGB"}
+        half["depth.Z"] = np.zeros((32, 32), np.float16)
+        half["Albedo.R"] = np.full((32, 32), .5, np.float16)
+        write_exr(self.folder / "b.exr", half)
+        report = self.report("compare", "a.exr", "b.exr", "--a-is", "radiance", "--b-is", "radiance",
+                             "--perceived")["comparison"]
+        self.assertEqual(report["cells"], 1024)
+        self.assertLess(report["relative_l2"], 3e-4)  # 11 bits
+        self.assertLess(report["flip"], 1e-2)
+        self.assertGreater(report["ssim"], .9999)
+        double = {name: np.repeat(np.repeat(full[name], 2, 0), 2, 1) for name in full}
+        write_exr(self.folder / "c.exr", double)
+        run = self.run_program("compare", "c.exr", "a.exr", "--a-is", "radiance", "--b-is", "radiance", "-o", "d.png")
+        self.assertIn("A was resampled: means of 2 x 2 of its 64 x 64 pixels", run.out + run.err)
+        self.solved()
+        self.refuse("r.h5", "r.h5", "--perceived", words=["--perceived", "pictures"])
 
     def test_the_gap_names_the_dominant_cause(self):
         few = self.report("compare", "box.obj", "--gather", *SMALL, "--passes", "1")["comparison"]

@@ -70,3 +70,24 @@ class ExrFile:
         out = np.empty(size, np.uint8)
         out[0::2], out[1::2] = values[:half], values[half:]
         return out.tobytes()
+
+
+def write_exr(path, channels):
+    """Writes float16 or float32 channels, by name (rows x columns each), as scan lines without packing."""
+    names = sorted(channels)
+    height, width = channels[names[0]].shape
+    listed = b"".join(name.encode() + struct.pack("<xiiii", 1 if channels[name].dtype == np.float16 else 2, 0, 1, 1)
+                      for name in names) + b"\0"
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    head = struct.pack("<Ii", 20000630, 2)
+    for name, kind, value in (("channels", "chlist", listed), ("compression", "compression", b"\0"),
+                              ("dataWindow", "box2i", window), ("displayWindow", "box2i", window),
+                              ("lineOrder", "lineOrder", b"\0"), ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+                              ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+                              ("screenWindowWidth", "float", struct.pack("<f", 1))):
+        head += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    head += b"\0"
+    lines = [b"".join(channels[name][y].tobytes() for name in names) for y in range(height)]
+    size = len(lines[0]) + 8
+    offsets = struct.pack(f"<{height}Q", *(len(head) + 8 * height + y * size for y in range(height)))
+    path.write_bytes(head + offsets + b"".join(struct.pack("<ii", y, len(line)) + line for y, line in enumerate(lines)))
