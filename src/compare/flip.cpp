@@ -156,8 +156,8 @@ Features featuresOf(const Plane& opponent_y) {
   for (const double w : smooth) total += w;
   for (double& w : smooth) w /= total;
   const auto times = [&](const std::function<double(int)>& factor) {
-    return balanced(
-        kernelOf(radius, [&](int x) { return factor(x) * plain[std::size_t(x + radius)]; }));
+    return balanced(kernelOf(
+        radius, [&](int x) { return factor(x) * plain[std::size_t(x) + std::size_t(radius)]; }));
   };
   const Kernel edge = times([](int x) { return -double(x); });
   const Kernel point = times([&](int x) { return double(x * x) / (sigma * sigma) - 1; });
@@ -194,6 +194,7 @@ std::vector<double> exposuresOf(const ColourPlane& reference) {
   const double last = std::log2(x / *middle);
   const int count = std::max(2, int(std::ceil(last - first)));
   std::vector<double> stops;
+  stops.reserve(std::size_t(count));
   for (int k = 0; k < count; ++k) stops.push_back(first + (last - first) * k / (count - 1));
   return stops;
 }

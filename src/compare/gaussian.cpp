@@ -26,8 +26,8 @@ Plane convolved(const Plane& plane, const Kernel& along_rows, const Kernel& alon
     for (int x = 0; x < plane.width; ++x) {
       double sum = 0;
       for (int k = -wide; k <= wide; ++k) {
-        sum +=
-            along_rows[std::size_t(k + wide)] * plane.at(std::clamp(x + k, 0, plane.width - 1), y);
+        sum += along_rows[std::size_t(k) + std::size_t(wide)] *
+               plane.at(std::clamp(x + k, 0, plane.width - 1), y);
       }
       across.at(x, y) = sum;
     }
@@ -40,7 +40,7 @@ Plane convolved(const Plane& plane, const Kernel& along_rows, const Kernel& alon
     for (int k = -high; k <= high; ++k) {
       const int from = std::clamp(y + k, 0, plane.height - 1);
       for (int x = 0; x < plane.width; ++x) {
-        out.at(x, y) += along_columns[std::size_t(k + high)] * across.at(x, from);
+        out.at(x, y) += along_columns[std::size_t(k) + std::size_t(high)] * across.at(x, from);
       }
     }
   });

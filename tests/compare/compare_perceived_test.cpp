@@ -23,7 +23,7 @@ ColourPlane busy() {
   ColourPlane plane = uniform(Vec3(0));
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
-      plane.pixels[std::size_t(y * kSide + x)] =
+      plane.pixels[std::size_t(y) * kSide + std::size_t(x)] =
           Vec3(x / 40.0, (x / 3 + y / 3) % 2 == 0 ? 0.2 : 0.6, y / 40.0);
     }
   }
@@ -83,7 +83,8 @@ TEST(Flip, GreysDifferByTheirLightness) {
 TEST(Flip, AnEdgeCountsMoreThanItsColours) {
   ColourPlane edge = uniform(Vec3(.3));
   for (int y = 0; y < kSide; ++y)
-    for (int x = kSide / 2; x < kSide; ++x) edge.pixels[std::size_t(y * kSide + x)] = Vec3(.4);
+    for (int x = kSide / 2; x < kSide; ++x)
+      edge.pixels[std::size_t(y) * kSide + std::size_t(x)] = Vec3(.4);
   const Plane flip = flipOfShown(edge, uniform(Vec3(.3)));
   // Three degrees off the edge is out of reach of all filters: of 67 pixels a degree the widest has
   // 10, that of features 9.
@@ -146,7 +147,8 @@ ImageFile light(int width, int height) {
   ImageFile file;
   file.image = {width, height, {}};
   for (int k = 0; k < width * height; ++k) {
-    file.image.rgba.insert(file.image.rgba.end(), {float(k % width), 1, float(k / width), 1});
+    const int row = k / width;
+    file.image.rgba.insert(file.image.rgba.end(), {float(k % width), 1, float(row), 1});
   }
   return file;
 }

@@ -29,7 +29,7 @@ RunError (a RuntimeError) says why a run failed.
 from ._core import InputError, RunError, set_threads as _set_threads, version as __version__
 from ._factors import FormFactors, Table, form_factors, from_csr, view_factors_from
 from ._files import Results, read
-from ._foreign import from_meshio, from_trimesh
+from ._foreign import from_meshio, from_pyvista, from_trimesh
 from ._gather import Gathered, gather
 from ._heat import Heat, RadiantTemperature, heat
 from ._illuminance import Illuminance
@@ -37,11 +37,13 @@ from ._light import Solution, solve
 from ._mesh import Mesh, mesh
 from ._picture import FalseColours, Layers, displayed, render
 from ._scene import Light, Scene, load
+from ._view import Page, plot, view
 
 __all__ = [
     "FalseColours", "FormFactors", "Gathered", "Heat", "Illuminance", "InputError", "Layers", "Light", "Mesh",
-    "RadiantTemperature", "Results", "RunError", "Scene", "Solution", "Table", "__version__", "displayed", "form_factors", "from_csr", "from_meshio", "from_trimesh", "gather", "heat",
-    "load", "mesh", "read", "render", "set_threads", "solve", "view_factors_from",
+    "Page", "RadiantTemperature", "Results", "RunError", "Scene", "Solution", "Table", "__version__", "displayed",
+    "form_factors", "from_csr", "from_meshio", "from_pyvista", "from_trimesh", "gather", "heat", "load", "mesh", "plot",
+    "read", "render", "set_threads", "solve", "view", "view_factors_from",
 ]
 
 

@@ -13,6 +13,7 @@ import scipy.sparse
 from . import _core
 from ._arrays import Fixed, numbers, path_text, printable, require, texts
 from ._core import InputError
+from ._html import figure, summary
 from ._mesh import Mesh
 from ._names import surfaces_named
 from ._notes import tell, warn
@@ -285,6 +286,14 @@ class FormFactors(Fixed):
 
     def __repr__(self) -> str:
         return f"<FormFactors of {len(self):,} rows, {self.method}>"
+
+    def _repr_html_(self) -> str:
+        total = max(float(self.area.sum()), 1e-300)
+        rows = [[words, figure(self.area @ share / total)] for words, share in
+                [("reaches patches", self.fronts), ("goes to the sky", self.sky), ("goes to black backs", self.backs)]]
+        if len(self.error):
+            rows.append(["error of the matrix, relative", figure(self.report["error_figure"])])
+        return summary(repr(self).strip("<>"), ["of what leaves, by area", "mean"], rows)
 
 
 def _resident_bytes() -> int:

@@ -1,4 +1,4 @@
-"""Scenes of meshio and trimesh, which read 40 formats between them. Neither is imported: what they
+"""Scenes of meshio, trimesh and pyvista, which read dozens of formats. None is imported: what they
 made is looked at."""
 
 from __future__ import annotations
@@ -136,3 +136,44 @@ def from_trimesh(mesh: Any, materials: Optional[Mapping[Any, Mapping[str, Any]]]
                  np.concatenate([np.asarray(part.faces) + k for k, (_, part) in zip(first, parts)]),
                  np.repeat([name for name, _ in parts], [len(part.faces) for _, part in parts]),
                  materials, sky)
+
+
+def from_pyvista(mesh: Any, groups: Optional[str] = None,
+                 materials: Optional[Mapping[Any, Mapping[str, Any]]] = None, sky: Any = 0.0) -> Scene:
+    """A scene of a pyvista.PolyData: its polygons, as Scene() takes them. All arrays are copied.
+
+    groups: the name of an array of its cells, whose values are the groups; of several parts join them first, or
+    take `mesh.extract_surface()` of other data sets. Default: one group.
+
+    Errors: InputError for one without polygons, for strips, lines and points beside them, and for an array that is
+    not there.
+
+    >>> class Square:                # as pyvista.Plane(), which need not be installed
+    ...     points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    ...     faces = [4, 0, 1, 2, 3]
+    ...     n_cells = 1
+    ...     cell_data = {"room": ["floor"]}
+    >>> rad.from_pyvista(Square(), groups="room").surface_names
+    ['floor']
+    """
+    if not hasattr(mesh, "faces") or not hasattr(mesh, "points") or not hasattr(mesh, "cell_data"):
+        raise InputError(f"mesh: is of type {type(mesh).__name__}; give a pyvista.PolyData, of other data sets "
+                         "mesh.extract_surface()")
+    padded = np.asarray(mesh.faces, dtype=np.int64).reshape(-1)
+    faces: list = []
+    at = 0
+    while at < len(padded):
+        faces.append(padded[at + 1:at + 1 + padded[at]])
+        at += 1 + int(padded[at])
+    if not faces:
+        raise InputError("pyvista mesh: has no polygons; extract its surface first")
+    if mesh.n_cells != len(faces):
+        raise InputError(f"pyvista mesh: {mesh.n_cells - len(faces)} of its {mesh.n_cells} cells are no polygons; "
+                         "take mesh.triangulate(), without lines and points")
+    of_faces = None
+    if groups is not None:
+        if groups not in mesh.cell_data:
+            raise InputError(f"groups: there is no array {groups!r} of cells; there are: "
+                             f"{', '.join(mesh.cell_data.keys()) or 'none'}")
+        of_faces = np.asarray(mesh.cell_data[groups])
+    return Scene(np.asarray(mesh.points, dtype=np.float64), faces, of_faces, materials, sky)

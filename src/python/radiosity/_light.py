@@ -10,6 +10,7 @@ from . import _core
 from ._arrays import Fixed, numbers, require
 from ._core import InputError, RunError
 from ._factors import FormFactors
+from ._html import figure, summary
 from ._illuminance import Illuminance, measured
 from ._mesh import Mesh
 from ._notes import warn
@@ -92,6 +93,18 @@ class Solution(Fixed):
 
     def __repr__(self) -> str:
         return f"<Solution of shape {self._shape}, {self.summary['status']}>"
+
+    def _repr_html_(self) -> str:
+        title = f"{repr(self).strip('<>')}, residual {self.summary['residual']:.2g}"
+        mesh = self.form_factors.mesh
+        area = self.form_factors.area
+        names = ["all rows"] if mesh is None else mesh.surface_names
+        surface = np.zeros(len(area), dtype=int) if mesh is None else mesh.surface
+        total = np.maximum(np.bincount(surface, area, minlength=len(names)), 1e-300)
+        means = [np.bincount(surface, area * values.reshape(len(area), -1).mean(axis=1), minlength=len(names)) / total
+                 for values in (self.radiosity, self.irradiance)]
+        return summary(title, ["surface", "radiosity, W/m^2", "irradiance, W/m^2"],
+                       ([name, figure(B), figure(H)] for name, B, H in zip(names, *means)))
 
 
 class Materials(NamedTuple):

@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from ._arrays import Fixed, numbers, require
 from ._core import InputError
+from ._html import figure, summary
 from ._names import surfaces_named
 from ._notes import tell
 from ._options import more, takes_options
@@ -196,6 +197,13 @@ class Mesh(Fixed):
 
     def __repr__(self) -> str:
         return f"<Mesh of {len(self):,} patches on {len(self.surface_names)} surfaces>"
+
+    def _repr_html_(self) -> str:
+        names = self.surface_names
+        counts = np.bincount(self.surface, minlength=len(names))
+        areas = np.bincount(self.surface, self.area, minlength=len(names))
+        return summary(repr(self).strip("<>"), ["surface", "patches", "area, m^2"],
+                       ([name, f"{n:,}", figure(area)] for name, n, area in zip(names, counts, areas)))
 
 
 @takes_options("mesh")

@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from ._arrays import Fixed, indices, numbers, path_text, printable, require, texts, yes_or_no
 from ._core import InputError
+from ._html import figure, summary, swatch
 from ._notes import tell
 from ._options import more, takes_options
 
@@ -249,6 +250,11 @@ class Scene(Fixed):
     def __repr__(self) -> str:
         return (f"<Scene of {len(self.face_surface):,} faces on {len(self.surface_names)} surfaces "
                 f"from {printable(self._handle.file)}>")
+
+    def _repr_html_(self) -> str:
+        return summary(repr(self).strip("<>"), ["material", "reflectance", "", "emission, W/m^2", "sides"],
+                       ([m["name"], swatch(m["reflectance"]), figure(m["reflectance"]), figure(m["emission"]),
+                         "2" if m["two_sided"] else "1"] for m in self.materials))
 
 
 @takes_options("scene", "overrides", "lights")
