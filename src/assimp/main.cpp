@@ -196,6 +196,17 @@ AssimpScene sceneOf(const aiScene& file) {
 
 using File = std::unique_ptr<const aiScene, void (*)(const aiScene*)>;
 
+/// A 3DS file whose animation leaves a light out gives it no node, without which Assimp refuses the
+/// whole scene. Its place is that of the light itself.
+void addNodesOfLights(const aiScene& file) {
+  for (unsigned l = 0; l < file.mNumLights; ++l) {
+    const aiString& name = file.mLights[l]->mName;
+    if (file.mRootNode->FindNode(name) != nullptr) continue;
+    aiNode* node = std::make_unique<aiNode>(name.C_Str()).release();  // the scene's from here on
+    file.mRootNode->addChildren(1, &node);
+  }
+}
+
 File import(const std::string& path) {
   const std::unique_ptr<aiPropertyStore, void (*)(aiPropertyStore*)> wishes(aiCreatePropertyStore(),
                                                                             aiReleasePropertyStore);
@@ -203,9 +214,12 @@ File import(const std::string& path) {
   aiSetImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, 1);
   // Assimp must not add octahedra for nodes if a file has no meshes.
   aiSetImportPropertyInteger(wishes.get(), AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
+  File file{aiImportFileExWithProperties(path.c_str(), 0, nullptr, wishes.get()), aiReleaseImport};
+  if (file == nullptr || file->mRootNode == nullptr) return file;
+  addNodesOfLights(*file);
   constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_TransformUVCoords;
-  return {aiImportFileExWithProperties(path.c_str(), kSteps, nullptr, wishes.get()),
-          aiReleaseImport};
+  if (aiApplyPostProcessing(file.get(), kSteps) == nullptr) static_cast<void>(file.release());
+  return file;
 }
 
 void answer(const std::string& path) {

@@ -61,6 +61,14 @@ bool lockWhole(int descriptor) {
   return fcntl(descriptor, F_OFD_SETLK, &whole) == 0;
 }
 
+/// Locks a file just made. True if another process has taken it for abandoned meanwhile. A system
+/// without locks keeps what killed runs leave.
+bool isLost(int descriptor) {
+  if (!lockWhole(descriptor)) return errno == EAGAIN || errno == EACCES;
+  struct stat now {};
+  return fstat(descriptor, &now) == 0 && now.st_nlink == 0;
+}
+
 /// Removes the temporary files with that stem that no living process holds.
 void removeAbandoned(const std::string& folder, const std::string& stem) {
   std::error_code error;
@@ -129,12 +137,16 @@ void AtomicFile::create(const std::string& folder, const std::string& name) {
     temporary_ =
         (fs::path(folder) / fmt::format("{}{:08x}.tmp{}", stem, random(), extension)).string();
     lock_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (lock_ >= 0 && isLost(lock_)) {
+      close(lock_);
+      lock_ = -1;
+      errno = EEXIST;
+    }
   } while (lock_ < 0 && errno == EEXIST);
   if (lock_ < 0) {
     throw InputError(fmt::format("{}: the folder {} cannot be written ({}); choose another", path_,
                                  folder, std::strerror(errno)));
   }
-  lockWhole(lock_);  // a system without locks keeps what killed runs leave
   files().temporaries.insert(temporary_);
 }
 

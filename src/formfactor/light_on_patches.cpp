@@ -90,13 +90,14 @@ LightOnPatches::Means LightOnPatches::meansOfAimed(std::span<const Light> lights
   Means means(mesh_, bands);
   if (aimedLights(lights).empty()) return means;
   const AimedLight light(mesh_, rays().rays, lights);
+  const SharpShadows sharp(mesh_, rays().rays);
   std::vector<std::atomic<bool>> reaches(light.lights().size());
   progress.begin("light of lamps", mesh_.size(), "patches");
   parallelFor(mesh_.size(), 16, [&](std::size_t i) {
     progress.advance();
     if (progress.cancelled()) return;
     std::vector<AimedLight::Share> shares(light.lights().size());
-    light.overPatch(i, patchSeed(mesh_, i, kSeedOfLights), shares);
+    light.overPatch(i, sharp, patchSeed(mesh_, i, kSeedOfLights), shares);
     for (std::size_t b = 0; b < width; ++b) {
       for (std::size_t l = 0; l < shares.size(); ++l) {
         const double strength = light.lights()[l].strength[b];

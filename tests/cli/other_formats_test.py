@@ -139,15 +139,16 @@ def chunk(number, body):
     return struct.pack("<HI", number, 6 + len(body)) + body
 
 
-def three_ds():
+def three_ds(lights=b"", nodes=b""):
+    """A square wall; `lights` beside it, and their `nodes` in the animation."""
     colour = chunk(0x0010, struct.pack("<3f", .25, .5, .75))
     material = chunk(0xAFFF, chunk(0xA000, b"paint\0") + chunk(0xA020, colour))
     mesh = chunk(0x4110, struct.pack("<H12f", 4, *(x for p in SQUARE for x in p)))
     faces = struct.pack("<H8H", 2, 0, 1, 2, 0, 0, 2, 3, 0)
     mesh += chunk(0x4120, faces + chunk(0x4130, b"paint\0" + struct.pack("<3H", 2, 0, 1)))
-    scene = chunk(0x3D3D, material + chunk(0x4000, b"wall\0" + chunk(0x4100, mesh)))
+    scene = chunk(0x3D3D, material + chunk(0x4000, b"wall\0" + chunk(0x4100, mesh)) + lights)
     node = chunk(0xB002, chunk(0xB010, b"wall\0" + struct.pack("<HHh", 0, 0, -1)))
-    return chunk(0x4D4D, scene + chunk(0xB000, node))
+    return chunk(0x4D4D, scene + chunk(0xB000, node + nodes))
 
 
 OFF = "OFF # a comment\n4 2 0\n0 0 0\n1 0 0 # two\n1 1 0\n\n0 1 0\n3 0 1 2 0.5 0.5 0.5\n3 0 2 3\n"
@@ -293,6 +294,18 @@ class OtherFormats(CliTest):
             found = np.genfromtxt(self.folder / "o.csv", delimiter=",", names=True)["illuminance_lx"]
             expected = 683 * np.dot(watts, (.2126, .7152, .0722)) / 4 * share
             np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-9)  # points stand 1e-5 m off
+
+    def test_lights_of_3ds(self):
+        """With a node in the animation, and without; 4 W of red, a half of green, a quarter of blue over 4 pi."""
+        colour = chunk(0x0010, struct.pack("<3f", 1, .5, .25)) + chunk(0x465B, struct.pack("<f", 4))
+        bulb = chunk(0x4000, b"bulb\0" + chunk(0x4600, struct.pack("<3f", .5, .5, 2) + colour))
+        node = chunk(0xB005, chunk(0xB010, b"bulb\0" + struct.pack("<HHh", 0, 0, -1)))
+        for nodes in node, b"":
+            with self.subTest(nodes=len(nodes)):
+                _, lights = self.lights_of("a.3ds", three_ds(bulb, nodes))
+                self.assertEqual(set(lights) - {"sky"}, {"bulb"})
+                self.assertEqual(lights["bulb"]["strength"], "0.31831, 0.159155, 0.0795775 W/sr")
+                self.assertEqual(lights["bulb"]["stands"], "at 0.5, 2, -0.5")  # z is up in the file
 
     def test_lights_of_collada(self):
         run, lights = self.lights_of("a.dae", COLLADA_LIGHTS)

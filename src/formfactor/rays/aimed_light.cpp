@@ -225,14 +225,23 @@ AimedLight::Share AimedLight::overPatch(const Light& light, std::size_t patch,
   return {scale * lit, scale * std::max(std::abs(a.lit - b.lit) / 2, edge)};
 }
 
-void AimedLight::overPatch(std::size_t patch, std::uint64_t seed, std::span<Share> shares) const {
+void AimedLight::overPatch(std::size_t patch, const SharpShadows& sharp, std::uint64_t seed,
+                           std::span<Share> shares) const {
   std::ranges::fill(shares, Share());
   if (mesh_.polygon[patch] == kNone || !(mesh_.area[patch] > 0)) return;
+  std::vector<std::uint8_t> is_exact(lights_.size(), 0);
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    const std::optional<double> exact = sharp.share(lights_[l], patch);
+    if (!exact) continue;
+    shares[l].value = *exact;
+    is_exact[l] = 1;
+  }
   double all = 0;
   for (const std::size_t count : kPoints) {
     std::optional<PatchPoints> first;
     std::optional<PatchPoints> second;
     for (std::size_t l = 0; l < lights_.size(); ++l) {
+      if (is_exact[l] != 0) continue;
       const double strength = over(lights_[l].strength);
       const bool known = all > 0 && !(shares[l].error * strength > kPatchTolerance * all);
       if (known || (count != kPoints.front() && !(shares[l].error > 0))) continue;

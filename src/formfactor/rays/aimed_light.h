@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formfactor/rays/point_rays.h"
+#include "formfactor/rays/sharp_shadows.h"
 #include "formfactor/rays/sobol.h"
 #include "radiosity/light.h"
 #include "radiosity/patch_mesh.h"
@@ -32,10 +33,12 @@ class AimedLight {
     double value = 0;
     double error = 0;  ///< standard, estimated
   };
-  /// Of each of lights(). Of a patch of which nothing is hidden by the light's closed form, if it
-  /// has one; else by points of the patch, the more the less two halves of them agree, until what
+  /// Of each of lights(). By the closed form of the parts that see it, if the light has one and no
+  /// more hides it than SharpShadows takes; of a patch of which nothing is hidden by that of a wide
+  /// light; else by points of the patch, the more the less two halves of them agree, until what
   /// they are off is little of all light on the patch. `seed`: of the points.
-  void overPatch(std::size_t patch, std::uint64_t seed, std::span<Share> shares) const;
+  void overPatch(std::size_t patch, const SharpShadows& sharp, std::uint64_t seed,
+                 std::span<Share> shares) const;
 
  private:
   struct Ways;

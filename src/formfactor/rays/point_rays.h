@@ -67,6 +67,9 @@ class PointRays {
   /// `mesh` is kept by reference.
   explicit PointRays(const PatchMesh& mesh);
 
+  const ViewScene& scene() const { return scene_; }
+  const EmbreeScene& embree() const { return embree_; }
+
   /// Finds where the rays of set `number` end, turned about the normal by `turn` radians. `ends`
   /// has set.rays() places.
   void look(const RaySource& from, const HemisphereSet& set, std::size_t number, double turn,

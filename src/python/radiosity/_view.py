@@ -11,13 +11,13 @@ from typing import Any, Optional, Union
 
 import numpy as np
 
-from .__main__ import program
 from ._arrays import path_text, require
 from ._core import InputError, RunError
 from ._factors import FormFactors, Table
 from ._light import Solution
 from ._mesh import _package
 from ._picture import FalseColours, displayed, render
+from ._program import program
 
 
 class Page:
