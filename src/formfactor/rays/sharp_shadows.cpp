@@ -9,6 +9,7 @@
 #include "base/geometry/box.h"
 #include "base/geometry/clip.h"
 #include "base/geometry/plane_frame.h"
+#include "base/made.h"
 #include "formfactor/rays/patch_points.h"
 
 namespace radiosity {
@@ -185,6 +186,26 @@ std::optional<std::vector<std::vector<Vec2>>> SharpShadows::shadowsOn(const Shaf
   return shadows;
 }
 
+/// The light of all parts of a triangle, times their areas.
+std::optional<double> SharpShadows::shareOfParts(const Light& light, const Shaft& shaft,
+                                                 const std::vector<std::vector<Vec2>>& parts) {
+  double sum = 0;
+  for (const Loop& part : parts) {
+    for (std::size_t k = 2; k < part.size(); ++k) {
+      const std::array<Vec2, 3> flat{part[0], part[k - 1], part[k]};
+      const double area = polygonArea(flat);
+      if (!(area > shaft.least)) continue;
+      const double share = light
+                               .share(shaft.frame.lift(flat[0]), shaft.frame.lift(flat[1]),
+                                      shaft.frame.lift(flat[2]))
+                               .value_or(-1);
+      if (share < 0) return std::nullopt;
+      sum += area * share;
+    }
+  }
+  return sum;
+}
+
 /// Times the piece's area.
 std::optional<double> SharpShadows::overPiece(const Light& light, std::size_t patch,
                                               const Corners& piece) const {
@@ -199,21 +220,9 @@ std::optional<double> SharpShadows::overPiece(const Light& light, std::size_t pa
   }
   const auto shadows = shadowsOn(shaft, mesh_.polygon[patch]);
   if (!shadows) return std::nullopt;
-  const auto parts = litParts(whole, *shadows);
+  const auto parts = litParts(whole, made(shadows));
   if (!parts) return std::nullopt;
-  double sum = 0;
-  for (const Loop& part : *parts) {
-    for (std::size_t k = 2; k < part.size(); ++k) {
-      const std::array<Vec2, 3> flat{part[0], part[k - 1], part[k]};
-      const double area = polygonArea(flat);
-      if (!(area > shaft.least)) continue;
-      const auto share = light.share(shaft.frame.lift(flat[0]), shaft.frame.lift(flat[1]),
-                                     shaft.frame.lift(flat[2]));
-      if (!share) return std::nullopt;
-      sum += area * *share;
-    }
-  }
-  return sum;
+  return shareOfParts(light, shaft, made(parts));
 }
 
 std::optional<double> SharpShadows::share(const Light& light, std::size_t patch) const {

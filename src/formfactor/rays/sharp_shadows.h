@@ -31,6 +31,8 @@ class SharpShadows {
   Corners cornersOf(std::size_t triangle) const;
   std::optional<double> overPiece(const Light& light, std::size_t patch,
                                   const Corners& piece) const;
+  static std::optional<double> shareOfParts(const Light& light, const Shaft& shaft,
+                                            const std::vector<std::vector<Vec2>>& parts);
   std::optional<std::vector<std::vector<Vec2>>> shadowsOn(const Shaft& shaft, Index own) const;
 
   const PatchMesh& mesh_;
