@@ -1,9 +1,6 @@
 #include "interchange/exported_parts.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -71,32 +68,6 @@ Image skyImage(std::span<const Light> lights, int width, int height,
     }
   }
   return image;
-}
-
-bool anyLight(std::span<const double> bands) {
-  return std::ranges::any_of(bands, [](double value) { return value > 0; });
-}
-
-void noteLoss(std::string text, std::vector<Note>& notes) {
-  notes.push_back({Severity::warning, std::move(text)});
-}
-
-void noteLosses(const Scene& scene, const std::string& program, std::vector<Note>& notes) {
-  if (!scene.colours.empty()) {
-    noteLoss(program + ": colours of vertices are left out; materials have their own reflectance",
-             notes);
-  }
-  for (const Material& material : scene.materials) {
-    if (material.emission_texture == kNone) continue;
-    noteLoss(fmt::format("{}: '{}' emits the mean of its texture all over", program, material.name),
-             notes);
-  }
-}
-
-Vec3 uprightAcross(const Vec3& ahead) {
-  // Any axis that is not nearly along it.
-  return std::abs(ahead.y) < 0.9 * std::hypot(ahead.x, ahead.y, ahead.z) ? Vec3(0, 1, 0)
-                                                                         : Vec3(0, 0, 1);
 }
 
 }  // namespace radiosity

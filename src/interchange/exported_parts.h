@@ -33,15 +33,4 @@ Image reflectanceImage(const Scene& scene, const Material& material);
 Image skyImage(std::span<const Light> lights, int width, int height,
                const std::function<Vec3(int column, int row)>& direction);
 
-/// Whether a sky of these bands shines.
-bool anyLight(std::span<const double> bands);
-
-/// Notes what no other program is told, whatever its format: colours of vertices, textures of
-/// emission. `program`: its name.
-void noteLosses(const Scene& scene, const std::string& program, std::vector<Note>& notes);
-void noteLoss(std::string text, std::vector<Note>& notes);
-
-/// A direction across `ahead`, for cameras and spots that have none.
-Vec3 uprightAcross(const Vec3& ahead);
-
 }  // namespace radiosity

@@ -6,10 +6,9 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 #include <numbers>
-#include <variant>
 
 #include "base/printable.h"
-#include "interchange/exported_parts.h"
+#include "interchange/foreign_writer.h"
 #include "radiosity/version.h"
 
 namespace radiosity {
@@ -46,55 +45,49 @@ std::string quiet(const std::string& name) {
 }
 
 /// Writes a scene, part by part.
-class PbrtWriter {
+class PbrtWriter final : ForeignWriter {
  public:
   PbrtWriter(const Scene& scene, const ForeignPicture& picture)
-      : scene_(scene), picture_(picture) {}
+      : ForeignWriter(scene, picture, "pbrt") {}
 
-  ForeignScene scene() {
+  ForeignScene write() {
     line("# radiosity " RADIOSITY_VERSION ": metres, W/m^2/sr; for pbrt-v4");
     camera();
     line("WorldBegin");
-    for (const Light& light : scene_.lights) addLight(light);
-    addSky();
-    for (std::size_t m = 0; m < scene_.materials.size(); ++m) addMaterial(m);
-    for (const SurfaceTriangles& mesh : surfaceTriangles(scene_)) addSurface(mesh);
+    addLights();
+    for (std::size_t m = 0; m < scene().materials.size(); ++m) addMaterial(m);
+    for (const SurfaceTriangles& mesh : surfaceTriangles(scene())) addSurface(mesh);
     noteOneSided();
-    noteLosses(scene_, "pbrt", made_.notes);
-    return std::move(made_);
+    return finish();
   }
 
  private:
-  void line(const std::string& text) { made_.text += text + "\n"; }
-  void note(const std::string& text) { noteLoss("pbrt: " + text, made_.notes); }
-
   void camera() {
-    const Camera& c = picture_.camera;
+    const Camera& c = picture().camera;
     // pbrt's axes are left-handed: without the mirror the picture would be one.
     line("Scale -1 1 1");
     line(fmt::format("LookAt {} {} {}  {} {} {}  {} {} {}", c.eye.x, c.eye.y, c.eye.z, c.target.x,
                      c.target.y, c.target.z, c.up.x, c.up.y, c.up.z));
-    line(fmt::format("Camera \"perspective\" \"float fov\" [{}]", shorterAngle(picture_)));
+    line(fmt::format("Camera \"perspective\" \"float fov\" [{}]", shorterAngle(picture())));
     line(
         fmt::format("Film \"rgb\" \"integer xresolution\" [{}] \"integer yresolution\" [{}] "
                     "\"string filename\" [\"{}.exr\"] \"bool savefp16\" [false]",
-                    picture_.width, picture_.height, quiet(picture_.stem)));
+                    picture().width, picture().height, quiet(picture().stem)));
     line("PixelFilter \"box\"");
     line("Sampler \"independent\" \"integer pixelsamples\" [256]");
     line("Integrator \"path\" \"integer maxdepth\" [100]");
   }
 
   void addMaterial(std::size_t m) {
-    const Material& material = scene_.materials[m];
+    const Material& material = scene().materials[m];
     const std::string name = nameOf(m);
     std::string reflectance = "\"rgb reflectance\" " + numbers(material.reflectance);
     if (material.texture != kNone) {
-      const std::string file = fmt::format("{}-{}.exr", picture_.stem, m + 1);
-      made_.images.emplace_back(file, reflectanceImage(scene_, material));
+      const std::string file = addReflectance(m);
       line(fmt::format(
           "Texture \"{}\" \"spectrum\" \"imagemap\" \"string filename\" [\"{}\"] "
           "\"string encoding\" [\"linear\"] \"string wrap\" [\"{}\"]",
-          name, quiet(file), scene_.textures[material.texture].repeat ? "repeat" : "clamp"));
+          name, quiet(file), scene().textures[material.texture].repeat ? "repeat" : "clamp"));
       reflectance = fmt::format("\"texture reflectance\" [\"{}\"]", name);
     }
     line(fmt::format("MakeNamedMaterial \"{}\" \"string type\" [\"diffuse\"] {}", name,
@@ -103,15 +96,15 @@ class PbrtWriter {
 
   /// Unique: two materials may have one name in other objects.
   std::string nameOf(std::size_t m) const {
-    return fmt::format("{} {}", quiet(scene_.materials[m].name), m + 1);
+    return fmt::format("{} {}", quiet(scene().materials[m].name), m + 1);
   }
 
   void addSurface(const SurfaceTriangles& mesh) {
-    const Surface& surface = scene_.surfaces[mesh.surface];
-    const Material& material = scene_.materials[surface.material];
+    const Surface& surface = scene().surfaces[mesh.surface];
+    const Material& material = scene().materials[surface.material];
     line("AttributeBegin  # " + quiet(surface.name));
     line(fmt::format("NamedMaterial \"{}\"", nameOf(surface.material)));
-    const Vec3 radiance = meanRadiance(scene_, material);
+    const Vec3 radiance = meanRadiance(scene(), material);
     if (radiance != Vec3(0.0)) {
       line(fmt::format("AreaLightSource \"diffuse\" \"rgb L\" {}{}", numbers(radiance),
                        material.two_sided ? " \"bool twosided\" [true]" : ""));
@@ -131,75 +124,55 @@ class PbrtWriter {
     line("AttributeEnd");
   }
 
-  void addLight(const Light& light) {
-    if (!light.shines() || light.isAllRound()) return;
-    const std::string strength =
-        numbers(Vec3(light.strength[0], light.strength[1], light.strength[2]));
-    double range = 0;
-    if (const auto* point = std::get_if<PointLight>(&light.kind)) {
-      range = point->range;
-      line(fmt::format("LightSource \"point\" \"rgb I\" {} \"point3 from\" {}", strength,
-                       numbers(point->at)));
-    } else if (const auto* spot = std::get_if<SpotLight>(&light.kind)) {
-      range = spot->range;
-      line(fmt::format(
-          "LightSource \"spot\" \"rgb I\" {} \"point3 from\" {} \"point3 to\" {} "
-          "\"float coneangle\" [{}] \"float conedeltaangle\" [{}]",
-          strength, numbers(spot->at), numbers(spot->aim), spot->outer, spot->outer - spot->inner));
-      if (spot->inner < spot->outer) {
-        note(
-            fmt::format("'{}' falls off by a smooth step in the cosine, here by the square of a "
-                        "ramp in it",
-                        light.name));
-      }
-    } else if (const auto* sun = std::get_if<Sun>(&light.kind)) {
-      line(
-          fmt::format("LightSource \"distant\" \"rgb L\" {} \"point3 from\" {} \"point3 to\" "
-                      "[0 0 0]",
-                      strength, numbers(glm::normalize(sun->toward))));
-      if (sun->diameter > 0) {
-        note(fmt::format("'{}' has sharp shadows, here a disc of {} degrees", light.name,
-                         sun->diameter));
-      }
-    } else {
-      note(fmt::format("'{}' is left out; there is no light of its kind", light.name));
-    }
-    if (range > 0) {
-      note(fmt::format("'{}' shines without end, here {} m far", light.name, range));
-    }
+  void addPoint(const PointLight& point, const Vec3& intensity) override {
+    line(fmt::format("LightSource \"point\" \"rgb I\" {} \"point3 from\" {}", numbers(intensity),
+                     numbers(point.at)));
   }
 
-  void addSky() {
-    if (!unevenSkies(scene_.lights).empty()) {
-      constexpr int kSide = 1024;
-      const std::string file = picture_.stem + "-sky.exr";
-      made_.images.emplace_back(file, skyImage(scene_.lights, kSide, kSide, [](int c, int r) {
-                                  return directionOfSquare((2 * c + 1.0) / kSide - 1,
-                                                           (2 * r + 1.0) / kSide - 1);
-                                }));
-      line(fmt::format("LightSource \"infinite\" \"string filename\" [\"{}\"]", quiet(file)));
-      return;
-    }
-    const std::vector<double> radiance = background(scene_.lights, 3);
-    if (!anyLight(radiance)) return;
-    line("LightSource \"infinite\" \"rgb L\" " + numbers({radiance[0], radiance[1], radiance[2]}));
+  void addSpot(const SpotLight& spot, const Vec3& intensity) override {
+    line(
+        fmt::format("LightSource \"spot\" \"rgb I\" {} \"point3 from\" {} \"point3 to\" {} "
+                    "\"float coneangle\" [{}] \"float conedeltaangle\" [{}]",
+                    numbers(intensity), numbers(spot.at), numbers(spot.aim), spot.outer,
+                    spot.outer - spot.inner));
+  }
+
+  std::string fallOff() const override {
+    return "by a smooth step in the cosine, here by the square of a ramp in it";
+  }
+
+  void addSun(const Sun& sun, const Vec3& irradiance) override {
+    line(
+        fmt::format("LightSource \"distant\" \"rgb L\" {} \"point3 from\" {} \"point3 to\" [0 0 0]",
+                    numbers(irradiance), numbers(glm::normalize(sun.toward))));
+  }
+
+  SkyPixels skyPixels() const override {
+    constexpr int kSide = 1024;
+    return {kSide, kSide, [](int column, int row) {
+              return directionOfSquare((2 * column + 1.0) / kSide - 1, (2 * row + 1.0) / kSide - 1);
+            }};
+  }
+
+  void addSkyImage(const std::string& file) override {
+    line(fmt::format("LightSource \"infinite\" \"string filename\" [\"{}\"]", quiet(file)));
+  }
+
+  void addUniformSky(const Vec3& radiance) override {
+    line("LightSource \"infinite\" \"rgb L\" " + numbers(radiance));
   }
 
   void noteOneSided() {
-    const bool all = std::ranges::all_of(scene_.materials, &Material::two_sided);
+    const bool all = std::ranges::all_of(scene().materials, &Material::two_sided);
     if (!all) note("backs reflect as fronts do; those of one-sided surfaces are black here");
   }
-
-  const Scene& scene_;
-  const ForeignPicture& picture_;
-  ForeignScene made_;
 };
 
 }  // namespace
 
 ForeignScene pbrtScene(const Scene& scene, const ForeignPicture& picture) {
   validate(scene);
-  return PbrtWriter(scene, picture).scene();
+  return PbrtWriter(scene, picture).write();
 }
 
 }  // namespace radiosity
