@@ -11,8 +11,7 @@ namespace radiosity {
 /// \n, \t, \r or \xNN. Everything else stays.
 std::string printable(std::string_view text);
 
-/// `text` with markup characters as entities. Control characters, which XML cannot represent,
-/// become
+/// `text` with markup characters as entities. Control characters, which XML cannot represent, are
 /// '_'.
 std::string markupText(std::string_view text);
 
