@@ -155,9 +155,6 @@ class FieldBuilder {
     progress_.end();
   }
 
-  bool isDear(const Node& node) const {
-    return node.lights && node.lights->kind == ElementLights::Kind::by_rays;
-  }
   bool isDark(const Node& node) const {
     return node.lights && node.lights->kind == ElementLights::Kind::dark;
   }
@@ -207,8 +204,7 @@ class FieldBuilder {
       const double edge = edgeOf(node);
       const bool partial = node.lights && node.lights->kind == ElementLights::Kind::partial;
       node.forced = edge > rule_.longest_edge || (partial && edge > rule_.partial_edge);
-      double smallest = isShown(node.root) ? rule_.smallest_edge : rule_.source_edge;
-      if (isDear(node)) smallest = std::max(smallest, rule_.edge_by_rays);
+      const double smallest = isShown(node.root) ? rule_.smallest_edge : rule_.source_edge;
       const double found = spreadOf(node);
       const bool steep = found > rule_.steep_spread && isShown(node.root) &&
                          edge > rule_.steep_fraction * smallest;
@@ -307,9 +303,8 @@ class FieldBuilder {
         }
         node.error = std::max(node.error, off / light);
       }
-      const double most = isDear(node) ? rule_.tolerance_by_rays : rule_.tolerance;
       node.wants_cut = node.forced || node.error > rule_.steep_spread ||
-                       node.error * edgeOf(node) / rule_.reference_edge > most;
+                       node.error * edgeOf(node) / rule_.reference_edge > rule_.tolerance;
     });
   }
 

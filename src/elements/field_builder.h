@@ -57,9 +57,6 @@ enum class RootUse : std::uint8_t {
 struct RefinementRule {
   double tolerance = 0.01;
   double smallest_edge = 0;  ///< metres
-  /// The same for light by rays, which costs tens of times as much and is less accurate.
-  double edge_by_rays = 0;
-  double tolerance_by_rays = 0.01;
   /// Elements with edges down to a fraction of `smallest_edge` are cut if their corners differ by
   /// more than this share: where bodies reach through each other, some corners are hidden.
   double steep_spread = 1;

@@ -33,10 +33,8 @@ constexpr double kOverNoise = 3;
 /// An element is tested if its corners differ by this many tolerances.
 constexpr double kTestedSpread = 2;
 /// If corners differ by more than this share, edges may be shorter by the factor below.
-constexpr double kSteepSpread = 0.2;
+constexpr double kSteepSpread = 0.15;
 constexpr double kSteepFraction = 0.125;
-/// Direct light by rays is not refined below this.
-constexpr double kDearEdge = 0.005;
 /// The least light to which errors are compared, as a share of the mean.
 constexpr double kLeastLight = 0.1;
 /// To divide most_rays, the last pass is assumed to have this many vertices for each corner of a
@@ -58,8 +56,6 @@ constexpr int kMostPasses = 24;
 /// is kept, in 64 MiB, or 16 rays a cell if that is more.
 constexpr double kRaysOfCell = 1.0 / 16;
 constexpr double kMostKept = 1u << 24;
-/// Direct light by rays: its steps are not refined below this.
-constexpr double kAimedTolerance = 0.02;
 
 double brightness(std::span<const double> values, std::size_t patch, std::size_t bands) {
   double sum = 0;
@@ -150,8 +146,6 @@ RefinementRule LightSources::rule(double tolerance, double smallest) const {
   rule.smallest_edge = smallest * surface_.diagonal;
   rule.steep_spread = kSteepSpread;
   rule.steep_fraction = kSteepFraction;
-  rule.tolerance_by_rays = std::max(tolerance, kAimedTolerance);
-  rule.edge_by_rays = kDearEdge * surface_.diagonal;
   rule.partial_edge = kPartialEdge * surface_.diagonal;
   rule.longest_edge = kLongestEdge * surface_.diagonal;
   rule.reference_edge = kReferenceEdge * surface_.diagonal;
@@ -192,10 +186,6 @@ void LightSources::findDirect(bool keep_lights) {
   emitter_light_ = std::make_unique<EmitterLight>(mesh_, materials_, surface_, elements_,
                                                   occluders_.get(), emitters_, rays_);
   RefinementRule how = rule(options_.tolerance, options_.smallest_edge);
-  if (!clip) {
-    how.tolerance = how.tolerance_by_rays;
-    how.smallest_edge = std::max(how.smallest_edge, how.edge_by_rays);
-  }
   how.other_light = light_of_patch_;
   how.keep_lights = keep_lights;
   direct_ =
