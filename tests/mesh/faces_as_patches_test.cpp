@@ -1,6 +1,7 @@
 // Patch k is face k of the file: nothing welded, cut or re-ordered.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <map>
@@ -92,6 +93,63 @@ TEST(FacesAsPatches, DegenerateFacesStay) {
   }
   EXPECT_EQ(mesh.area[0], 0.5);
   EXPECT_EQ(mesh.polygons.size(), 1u);
+}
+
+bool anyNote(const MeshReport& report, Severity severity, const std::string& text) {
+  return std::ranges::any_of(report.notes, [&](const Note& note) {
+    return note.severity == severity && note.text.find(text) != std::string::npos;
+  });
+}
+
+/// A face that repeats another, from any of its corners on; that has its corners the other way
+/// round, which is another face; and that differs in one corner.
+TEST(FacesAsPatches, FacesThatRepeatOthersHaveNoArea) {
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 1e-3}, {-0.0, 0, 0}};
+  const std::vector<std::vector<Index>> faces{{0, 1, 2}, {2, 4, 1}, {2, 1, 0}, {0, 1, 3}};
+  const auto [mesh, report] = asPatches(shared(corners, faces, {0, 1, 1, 1}));
+  ASSERT_EQ(mesh.size(), 4u);
+  EXPECT_EQ(report.duplicate_faces, 1u);
+  EXPECT_EQ(mesh.area[1], 0);
+  EXPECT_EQ(mesh.polygon[1], kNone);
+  EXPECT_EQ(report.surfaces[1].overlapped, 0.5);
+  for (const std::size_t k : {0u, 2u, 3u}) EXPECT_GT(mesh.area[k], 0.4);
+  EXPECT_TRUE(anyNote(report, Severity::warning, "1 faces have the corners of others"));
+  EXPECT_TRUE(anyNote(report, Severity::warning, "face 1 (b, element 2), which repeats face 0"));
+
+  Scene plates = shared(corners, {{0, 1, 2}, {2, 1, 0}});
+  plates.materials[0].two_sided = true;
+  EXPECT_EQ(asPatches(plates).report.duplicate_faces, 1u);
+}
+
+/// Neighbours, a plate on the other side and one a little above share nothing, wherever they are.
+TEST(FacesAsPatches, OverlapsAreReported) {
+  struct Case {
+    const char* name;
+    Vec3 moved;   ///< the second square
+    bool upside;  ///< the second faces as the first
+    bool overlaps;
+  };
+  for (const Case& c : std::initializer_list<Case>{{"half", {0.5, 0, 0}, true, true},
+                                                   {"corner", {0.9, 0.9, 0}, true, true},
+                                                   {"neighbour", {1, 0, 0}, true, false},
+                                                   {"diagonal", {1, 1, 0}, true, false},
+                                                   {"other side", {0.5, 0, 0}, false, false},
+                                                   {"above", {0.5, 0, 1e-3}, true, false}}) {
+    for (const Vec3& origin : {Vec3(0.0), Vec3(1e4, -2e4, 3e3)}) {
+      std::vector<Vec3> v;
+      for (const Vec3& square : {Vec3(0.0), c.moved}) {
+        for (const Vec3& at : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) {
+          // Turned about x, so that no plane is an axis'.
+          const Vec3 p = square + at;
+          v.push_back(origin + Vec3(p.x, 0.8 * p.y - 0.6 * p.z, 0.6 * p.y + 0.8 * p.z));
+        }
+      }
+      std::vector<Index> second{4, 5, 6, 7};
+      if (!c.upside) std::ranges::reverse(second);
+      const MeshReport report = asPatches(shared(v, {{0, 1, 2, 3}, second})).report;
+      EXPECT_EQ(anyNote(report, Severity::loud, "1 pairs of faces overlap"), c.overlaps) << c.name;
+    }
+  }
 }
 
 TEST(FacesAsPatches, ConcaveFaceIsOnePatchWithItsCentroidInside) {

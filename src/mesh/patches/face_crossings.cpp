@@ -118,11 +118,11 @@ std::vector<std::pair<Index, Index>> findCrossings(const Scene& scene,
   }
   const CrossingTest test(scene, coincidence);
   std::vector<std::pair<Index, Index>> found;
-  for (const auto& [first, second] : overlappingPairs(boxes, &progress)) {
-    progress.check();
-    const FacePiece& p = pieces[first];
-    const FacePiece& q = pieces[second];
-    if (p.face != q.face && test.cross(p, q)) found.push_back(std::minmax(p.face, q.face));
+  const auto crosses = [&](Index p, Index q) {
+    return pieces[p].face != pieces[q].face && test.cross(pieces[p], pieces[q]);
+  };
+  for (const auto& [p, q] : overlappingPairs(boxes, &progress, crosses)) {
+    found.push_back(std::minmax(pieces[p].face, pieces[q].face));
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());

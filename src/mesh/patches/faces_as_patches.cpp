@@ -10,11 +10,13 @@
 #include "base/geometry/segment.h"
 #include "mesh/box_pairs.h"
 #include "mesh/patches/face_crossings.h"
+#include "mesh/patches/face_overlaps.h"
 #include "mesh/patches/face_polygons.h"
 #include "mesh/patches/mesh_figures.h"
 #include "mesh/patches/patch_arrays.h"
 #include "mesh/polygons/complex.h"
 #include "mesh/triangulate.h"
+#include "radiosity/spelling.h"
 #include "scene/checks/close_faces.h"
 
 namespace radiosity {
@@ -82,12 +84,13 @@ class FacePatches {
       report_.surfaces.emplace_back().name = surface.name;
     }
     mesh_.corner_offset = mesh_.piece_offset = {0};
+    repeats_ = findRepeats(scene_);
     for (Index f = 0; f < faces; ++f) {
       progress_.check();
       append(f);
       progress_.advance();
     }
-    if (report_.degenerate_faces == faces) {
+    if (report_.degenerate_faces + report_.duplicate_faces == faces) {
       throw InputError(fmt::format("{}: no face has an area", scene_.file));
     }
     mergeFaces(scene_, shapes_, coincidence_, mesh_, progress_);
@@ -132,6 +135,9 @@ class FacePatches {
     if (degenerate) {
       surface.degenerate += glm::length(area);
       ++report_.degenerate_faces;
+    } else if (repeats_[f] != kNone) {
+      surface.overlapped += glm::length(area);
+      ++report_.duplicate_faces;
     } else {
       least_coincidence_ = std::min(least_coincidence_, coincidence);
       shape.area = glm::length(area);
@@ -225,8 +231,32 @@ class FacePatches {
     report_.notes.insert(report_.notes.end(), notes.begin(), notes.end());
   }
 
+  /// Faces that others repeat, and those that share some of their area.
+  void noteOverlaps() {
+    if (report_.duplicate_faces > 0) {
+      Index first = 0;
+      while (repeats_[first] == kNone || shapes_[repeats_[first]].area == 0) ++first;
+      report_.notes.push_back(
+          {Severity::warning,
+           fmt::format(
+               "{} faces have the corners of others and stay as patches without area, first "
+               "{}, which repeats {}",
+               report_.duplicate_faces, nameOf(scene_, first), nameOf(scene_, repeats_[first]))});
+    }
+    const auto overlaps = findOverlaps(scene_, pieces_, coincidence_, progress_);
+    if (overlaps.empty()) return;
+    report_.notes.push_back(
+        {Severity::loud,
+         fmt::format("{}{} pairs of faces overlap, first {} and {}: what they share counts twice; "
+                     "without {} it is cut off",
+                     overlaps.size(), overlaps.size() == kMostOverlaps ? " or more" : "",
+                     nameOf(scene_, overlaps[0].first), nameOf(scene_, overlaps[0].second),
+                     spelled("faces_as_patches"))});
+  }
+
   void findings() {
     noteLostGaps();
+    noteOverlaps();
     const auto crossings = findCrossings(scene_, pieces_, coincidence_, progress_);
     report_.crossings = crossings.size();
     if (!crossings.empty()) {
@@ -264,6 +294,7 @@ class FacePatches {
   double least_coincidence_ = std::numeric_limits<double>::infinity();
   PatchMesh mesh_;
   std::vector<FaceShape> shapes_;
+  std::vector<Index> repeats_;  ///< by face, as findRepeats() has it
   std::vector<FacePiece> pieces_;
   Index least_planar_ = kNone;
 };
