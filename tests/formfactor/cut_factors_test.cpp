@@ -71,6 +71,31 @@ TEST(Cut, GivesTheIrradianceOfExactFormFactors) {
   }
 }
 
+/// A room that is lit through a door gets all of its light from the same few nodes: what their fits
+/// are off by, all of its patches are off by, 6% where only the light of all patches counts.
+TEST(Cut, LightsADimRoomRight) {
+  const Scene scene = test::dataScene("two-rooms");
+  const PatchMesh mesh = test::meshOf(scene, 3000);
+  const PatchMaterials materials = patchMaterials(scene, mesh);
+  const FormFactors truth = test::computed(mesh, test::exactly(1e-2));
+  FormFactorOptions options = byCuts(0.03);
+  options.exact_rows = emittingPatches(mesh, materials);
+  const FormFactors f = test::computed(mesh, options);
+  Progress quiet;
+  const auto lightOf = [&](const FormFactors& factors) {
+    const Solution solution = solve(factors, materials, mesh, {}, quiet);
+    double power = 0;
+    for (std::size_t i = 0; i < mesh.size(); ++i) {
+      if (!mesh.surface_names[mesh.surface[i]].starts_with("dark")) continue;
+      power += mesh.area[i] * solution.irradiance[3 * i];
+    }
+    return power;
+  };
+  // It gets .07 of the mean light, and what rows are off by is held against a tenth of that at
+  // least: .03 of it is .04 of theirs.
+  EXPECT_NEAR(lightOf(f) / lightOf(truth), 1, 0.04);
+}
+
 TEST(Cut, ClosesItsRows) {
   const PatchMesh mesh = test::roomWithBlock(6).build();
   const FormFactors f = test::computed(mesh, byCuts(0.05));

@@ -28,6 +28,8 @@ constexpr std::array<double, 10> kOpenings{1, 0.7, 0.5, 0.35, 0.25, 0.18, 0.125,
 /// Nodes are opened beyond what the tolerance asks for while that takes no more than this many
 /// times the entries: where each ray of a row ends elsewhere, cutting saves next to nothing.
 constexpr double kFewEntries = 1.25;
+/// The least light, as a share of the mean, to which the error of a row is compared.
+constexpr double kLeastLight = 0.1;
 using OfTrials = std::array<double, kTrials>;
 
 struct SampleRow {
@@ -80,6 +82,33 @@ double relativeError(std::span<const SampleRow> rows, OfTrials SampleRow::*off) 
   return lit > 0 ? std::sqrt(sum / lit) : 0.0;
 }
 
+/// The same with the error of each row relative to its own light: what cuts are off by is alike
+/// from row to row, and a dim room gets all of its light from the same few nodes. Light below
+/// kLeastLight of the mean counts as that.
+double relativeErrorOfRows(std::span<const SampleRow> rows, OfTrials SampleRow::*off) {
+  double sum = 0;
+  int lit = 0;
+  for (std::size_t t = 0; t < kTrials; ++t) {
+    const auto lightOf = [t](const SampleRow& row) {
+      return row.direct[t] + row.sky[t] + row.whole[t];
+    };
+    double area = 0;
+    double light = 0;
+    for (const SampleRow& row : rows) {
+      area += row.area;
+      light += row.area * lightOf(row);
+    }
+    if (!(light > 0)) continue;
+    ++lit;
+    const double least = kLeastLight * light / area;
+    for (const SampleRow& row : rows) {
+      const double share = (row.*off)[t] / std::max(lightOf(row), least);
+      sum += row.area / area * share * share;
+    }
+  }
+  return lit > 0 ? std::sqrt(sum / lit) : 0.0;
+}
+
 class Trials {
  public:
   Trials(const RayScene& scene, const PatchTree& tree, TrialLights lights, Progress& progress)
@@ -116,12 +145,12 @@ class Trials {
     for (const double opening : kOpenings) {
       const CutPlan before = plan;
       plan.opening = opening;
-      cutAll(plan);
+      const double of_rows = cutAll(plan);
       if (plan.entries > most_entries) {
         plan = before;
         return;
       }
-      if (plan.bias <= kBiasShare * tolerance) {
+      if (of_rows <= kBiasShare * tolerance) {
         most_entries = std::min(most_entries, kFewEntries * plan.entries);
       }
     }
@@ -145,7 +174,8 @@ class Trials {
     plan.noise = relativeError(rows_, &SampleRow::difference);
   }
 
-  void cutAll(CutPlan& plan) {
+  /// Returns the error of cutting relative to the light of rows.
+  double cutAll(CutPlan& plan) {
     const RowCutter cutter(scene_, tree_, plan.opening);
     std::vector<std::size_t> entries(rows_.size());
     parallelFor(rows_.size(), 1, [&](std::size_t k) {
@@ -164,6 +194,7 @@ class Trials {
     for (const std::size_t of_row : entries) sum += double(of_row);
     plan.entries = sum / double(rows_.size());
     plan.bias = relativeError(rows_, &SampleRow::off);
+    return relativeErrorOfRows(rows_, &SampleRow::off);
   }
 
   const RayScene& scene_;
