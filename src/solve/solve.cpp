@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -100,34 +101,48 @@ double normOf(std::span<const double> irradiance, std::span<const double> area) 
   return std::sqrt(squares);
 }
 
-/// About the relative error (L2, by area) of F B at most, where rows state their errors. What a row
-/// is off by is independent from column to column, has a variance in proportion to F_ij, as counts
-/// of rays do, and sums to nothing with what the row misses: so its H is off by its error times the
-/// standard deviation of B over what it sees. Exact rows, of emitters, are right in all columns,
-/// too: their own light is left out.
+/// About the error (L2, by area) of F B at most, where rows state their errors. What a row is off
+/// by is independent from column to column, has a variance in proportion to F_ij, as counts of rays
+/// do, and sums to nothing with what the row misses: so its H is off by its error times the
+/// standard deviation of the light over what it sees. `beside`: B less the light of what rows miss.
+/// Exact rows, of emitters, are right in all columns, too: their own light is left out.
 std::optional<double> errorByRows(const FormFactors& factors, std::span<const double> emission,
-                                  const Solution& solution) {
+                                  std::span<const double> beside, int bands) {
+  if (factors.error.empty()) return std::nullopt;
   const std::span<const double> area = factors.matrix->area();
-  const double norm = normOf(solution.irradiance, area);
-  if (factors.error.empty() || !(norm > 0)) return std::nullopt;
-  const auto width = std::size_t(solution.bands);
+  const auto width = std::size_t(bands);
   // A column of light and one of its squares for each band.
-  std::vector<double> light(2 * solution.radiosity.size());
+  std::vector<double> light(2 * beside.size());
   std::vector<double> seen(light.size());
-  for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
+  for (std::size_t k = 0; k < beside.size(); ++k) {
     const double own = factors.report.exact_rows ? emission[k] : 0.0;
-    const double value = solution.radiosity[k] - own;
+    const double value = beside[k] - own;
     light[2 * k] = value;
     light[2 * k + 1] = value * value;
   }
-  factors.matrix->product(light, 2 * solution.bands, seen);
+  factors.matrix->product(light, 2 * bands, seen);
   double square = 0;
-  for (std::size_t k = 0; k < solution.radiosity.size(); ++k) {
+  for (std::size_t k = 0; k < beside.size(); ++k) {
     const std::size_t i = k / width;
     const double variance = std::max(0.0, seen[2 * k + 1] - seen[2 * k] * seen[2 * k]);
     square += area[i] * factors.error[i] * factors.error[i] * variance;
   }
-  return std::sqrt(square) / norm;
+  return std::sqrt(square);
+}
+
+/// About the error (L2, by area) of irradiance by other patches and from around, where the matrix
+/// knows it. `around`: W/m^2, by band, from where nothing stands, alike all round; or none. What a
+/// row misses of patches it finds of that, and the other way round.
+std::optional<double> errorOf(const FormFactors& factors, std::span<const double> emission,
+                              const Solution& solution, std::span<const double> around) {
+  const auto width = std::size_t(solution.bands);
+  std::vector<double> beside = solution.radiosity;
+  for (std::size_t k = 0; k < beside.size() && !around.empty(); ++k) beside[k] -= around[k % width];
+  const auto relative = factors.matrix->relativeError(beside, solution.bands);
+  if (!relative) return errorByRows(factors, emission, beside, solution.bands);
+  std::vector<double> seen(beside.size());
+  factors.matrix->product(beside, solution.bands, seen);
+  return *relative * normOf(seen, factors.matrix->area());
 }
 
 /// Fills in the summary of a scene in which B = 0 for every patch.
@@ -158,7 +173,7 @@ void checkMaterials(std::span<const double> reflectance, std::span<const double>
 Solution solveUntimed(const FormFactors& factors, std::span<const double> reflectance,
                       std::span<const double> emission, int bands, const SolveOptions& options,
                       Progress& progress, const PatchNames& names,
-                      std::span<const double> by_lights) {
+                      std::span<const double> by_lights, std::span<const double> around) {
   options.validate();
   checkSizes(factors, reflectance, emission, by_lights, bands, names);
   checkMaterials(reflectance, emission, bands, names);
@@ -196,13 +211,11 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   }
   if (!factors.matrix->isNonNegative()) raiseFromBelowZero(source, solution);
   const std::span<const double> area = factors.matrix->area();
-  summary.irradiance_error = factors.matrix->relativeError(solution.radiosity, bands);
-  if (!summary.irradiance_error)
-    summary.irradiance_error = errorByRows(factors, emission, solution);
-  const double reflected = normOf(solution.irradiance, area);
+  const std::optional<double> off = errorOf(factors, emission, solution, around);
   for (std::size_t k = 0; k < by_lights.size(); ++k) solution.irradiance[k] += by_lights[k];
-  if (summary.irradiance_error) {
-    *summary.irradiance_error *= reflected / normOf(solution.irradiance, area);
+  const double norm = normOf(solution.irradiance, area);
+  if (off && norm > 0) {
+    summary.irradiance_error = *off / norm;
     if (summary.usable()) {
       summary.message +=
           fmt::format("; irradiance off by about {:.2g}%{}", 100 * *summary.irradiance_error,
@@ -214,18 +227,29 @@ Solution solveUntimed(const FormFactors& factors, std::span<const double> reflec
   return solution;
 }
 
-/// solve() with irradiance by lights without a surface, N * bands, W/m^2.
+/// solve() with irradiance by lights without a surface, N * bands, W/m^2, of which that of `around`
+/// (errorOf()) is a part.
 Solution solveRows(const FormFactors& factors, std::span<const double> reflectance,
                    std::span<const double> emission, int bands, const SolveOptions& options,
-                   Progress& progress, const PatchNames& names, std::span<const double> by_lights) {
+                   Progress& progress, const PatchNames& names, std::span<const double> by_lights,
+                   std::span<const double> around) {
   const Stopwatch watch;
-  Solution solution =
-      solveUntimed(factors, reflectance, emission, bands, options, progress, names, by_lights);
+  Solution solution = solveUntimed(factors, reflectance, emission, bands, options, progress, names,
+                                   by_lights, around);
   solution.summary.seconds = watch.seconds();
   return solution;
 }
 
 /// Says in the message which lights reach nothing, and how far the others may be off.
+/// W/m^2, by band: what comes from where nothing stands, alike all round.
+std::vector<double> lightAround(std::span<const Light> lights, int bands) {
+  std::vector<double> around(std::size_t(bands), 0.0);
+  for (const Light& light : lights) {
+    for (std::size_t b = 0; b < around.size(); ++b) around[b] += light.fromAround(b, 1);
+  }
+  return around;
+}
+
 void noteErrorOf(const LightFall& by_lights, SolveSummary& summary) {
   if (!summary.usable()) return;
   for (const std::string& name : by_lights.lost) {
@@ -245,8 +269,11 @@ Solution solve(const FormFactors& factors, std::span<const double> reflectance,
                std::span<const double> emission, int bands, const SolveOptions& options,
                Progress& progress, std::span<const Index> group,
                std::span<const std::string> group_names, std::span<const double> sky) {
-  Solution solution = solveRows(factors, reflectance, emission, bands, options, progress,
-                                {group, group_names}, skyIrradiance(factors, sky, bands));
+  Solution solution =
+      solveRows(factors, reflectance, emission, bands, options, progress, {group, group_names},
+                skyIrradiance(factors, sky, bands),
+                sky.empty() ? std::vector<double>{}
+                            : lightAround(std::array{uniformSky({sky.begin(), sky.end()})}, bands));
   judgeBalance(factors, emission, solution.summary);
   return solution;
 }
@@ -258,7 +285,8 @@ Solution solve(const FormFactors& factors, const PatchMaterials& materials, cons
       LightOnPatches(mesh).all(materials.lights, factors.sky, materials.bands, progress);
   Solution solution =
       solveRows(factors, materials.reflectance, materials.emission, materials.bands, options,
-                progress, {mesh.surface, mesh.surface_names}, by_lights.irradiance);
+                progress, {mesh.surface, mesh.surface_names}, by_lights.irradiance,
+                lightAround(materials.lights, materials.bands));
   noteErrorOf(by_lights, solution.summary);
   judgeBalance(factors, materials.emission, solution.summary);
   return solution;

@@ -209,11 +209,14 @@ TEST(Elements, ARugThatHoversDoesNotDarkenTheFloorBesideIt) {
   builder.level(builder.surface("floor", 0.0), -2, -2, 2, 2, 0);
   builder.level(builder.surface("rug", 0.0), -1.03, -1.01, 0.27, 1.01, 2e-3);
   constexpr int kParts = 12;  // along either side
-  for (int k = 0; k < kParts * kParts; ++k) {
-    const double x = -0.5 + double(k % kParts) / kParts;
-    const double y = -1 + 2 * double(k / kParts) / kParts;
-    builder.level(builder.surface(fmt::format("lamp-{}", k), 0.0, 1.0), x, y, x + 1.0 / kParts,
-                  y + 2.0 / kParts, 2, false);
+  for (int row = 0; row < kParts; ++row) {
+    for (int column = 0; column < kParts; ++column) {
+      const double x = -0.5 + double(column) / kParts;
+      const double y = -1 + 2 * double(row) / kParts;
+      const std::string name = fmt::format("lamp-{}-{}", row, column);
+      builder.level(builder.surface(name, 0.0, 1.0), x, y, x + 1.0 / kParts, y + 2.0 / kParts, 2,
+                    false);
+    }
   }
   const auto from_elsewhere = [](const PatchMesh& mesh, const PatchMaterials& materials) {
     return std::vector<double>(mesh.size() * std::size_t(materials.bands), 0.4);

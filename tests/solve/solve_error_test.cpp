@@ -56,6 +56,28 @@ TEST(SolveError, IrradianceByRaysIsOffByAboutWhatIsStated) {
   }
 }
 
+// What rows miss of dark walls they find of a bright sky: under one, dark walls make rows that are
+// off worth more than bright ones. Cut rows state what they are off by, not what they are within.
+TEST(SolveError, IrradianceUnderASkyIsOffByAboutWhatIsStated) {
+  for (const double reflectance : {0.1, 0.5, 0.9}) {
+    Scene scene = test::dataScene("city.stl");
+    for (Material& material : scene.materials) material.reflectance = Vec3(reflectance);
+    scene.lights = {uniformSky({1, 1, 1})};
+    Progress quiet;
+    const PatchMesh mesh = meshScene(scene, {.patches = 600}, quiet).mesh;
+    const PatchMaterials materials = patchMaterials(scene, mesh);
+    const Solved truth = solved(mesh, materials, FormFactorMethod::exact, 1e-4);
+    for (const FormFactorMethod method : {FormFactorMethod::rays, FormFactorMethod::cut}) {
+      const Solved found = solved(mesh, materials, method, 0.05);
+      ASSERT_TRUE(found.stated);
+      const double off = apart(mesh, found.irradiance, truth.irradiance);
+      const double margin = method == FormFactorMethod::cut ? 1.3 : 1.0;
+      EXPECT_LT(off, margin * *found.stated) << reflectance;
+      EXPECT_GT(off, *found.stated / 4) << reflectance;
+    }
+  }
+}
+
 // The figures of exact rows are bounds, 4 to 14 times what they are off by.
 TEST(SolveError, IrradianceByExactRowsIsOffByLess) {
   const Scene scene = test::dataScene("two-rooms.obj");
