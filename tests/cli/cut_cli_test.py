@@ -43,7 +43,9 @@ class CutCliTest(CliTest):
         self.assertIn("usable", run.out)
 
     def test_goes_on_after_it_was_killed(self):
-        command = ["factors", SCENE, *CUT[:4], "--tolerance", "0.005", "--resume", "--threads", "1"]
+        # Rows that take a second or two, so that a busy machine, too, sees the first before the last.
+        command = ["factors", SCENE, "--patches", "4000", *CUT[2:4], "--tolerance", "0.002", "--resume",
+                   "--threads", "1"]
         self.run_program(*command, "-o", "whole.h5")
         process = subprocess.Popen([PROGRAM, *command, "-o", "f.h5"], cwd=self.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
